@@ -2,14 +2,14 @@
 
 #include "support/ChiSquare.h"
 
-#include "tungsten/emitter/Power.h"
+#include "tungsten/emitter/Emitter.h"
 
 #include <gtest/gtest.h>
 
 namespace tungsten {
 namespace {
 
-Emitter withModel(EmitterModel model) {
+Emitter withModel(EmitterVariant model) {
     Emitter emitter;
     emitter.model = std::move(model);
     return emitter;
@@ -27,14 +27,14 @@ struct QuadLamp {
         transform.z = Vec3f(0, 0, -2);
         transform.translation = Vec3f(0, 3, 0);
         shape = makeQuad(transform);
-        emitter = withModel(AreaEmitter{&shape, 0, Texture(5.0f), std::make_shared<const AreaSampler>(shape)});
+        emitter = withModel(AreaEmitter{{}, &shape, 0, Texture(5.0f), std::make_shared<const AreaSampler>(shape)});
     }
 };
 
 /// A disk of radius 1 that shines downward with radiance 5, into a cone of half angle 60 degrees.
 struct ConeDiskLamp {
     Shape shape = Disk{Vec3f(0, 3, 0), 1.0f, Frame(Vec3f(0, -1, 0)), 0.5f};
-    Emitter emitter = withModel(AreaEmitter{&shape, 0, Texture(5.0f), std::make_shared<const AreaSampler>(shape)});
+    Emitter emitter = withModel(AreaEmitter{{}, &shape, 0, Texture(5.0f), std::make_shared<const AreaSampler>(shape)});
 };
 
 SpotEmitter spot() {
@@ -57,7 +57,7 @@ TEST(Emitter, PhotonsCarryTheEmittersPower) {
     InfiniteSphereEmitter sky = makeInfiniteSphere(Texture(0.5f), Frame(), true);
     sky.sceneRadius = 3.0f;
     const std::vector<std::pair<Emitter, double>> cases{
-        {withModel(PointEmitter{Vec3f(0.0f), Rgb(3.0f)}), 12.0 * 3.14159265358979},
+        {withModel(PointEmitter{{}, Vec3f(0.0f), Rgb(3.0f)}), 12.0 * 3.14159265358979},
         {withModel(spot()), 2.0 * 2.0 * 3.14159265358979 * (1.0 - 0.625)},
         {withModel(beam), 7.0},
         {withModel(sky), 0.5 * 4.0 * 9.0 * 3.14159265358979 * 3.14159265358979},
@@ -87,7 +87,7 @@ TEST(Emitter, DirectionsFollowTheirDensities) {
             return sampleEmission(emitter, uPosition, s.next2D()).ray.direction;
         };
     };
-    const Emitter point = withModel(PointEmitter{Vec3f(0.0f), Rgb(1.0f)}), cone = withModel(spot());
+    const Emitter point = withModel(PointEmitter{{}, Vec3f(0.0f), Rgb(1.0f)}), cone = withModel(spot());
     EXPECT_GT(test::chiSquareSphere(direction(point), [](const Vec3f&) { return 0.25 / 3.14159265358979; }),
               test::SmallestPValue);
     EXPECT_GT(test::chiSquareSphere(direction(cone),
@@ -125,7 +125,7 @@ TEST(Emitter, ConnectionsAndPhotonsAgreeOnTheConeOfADisk) {
 }
 
 TEST(Emitter, ConnectionsGiveTheIrradianceOfClosedForms) {
-    const auto point = sampleDirect(withModel(PointEmitter{Vec3f(0, 2, 0), Rgb(3.0f)}), Vec3f(0.0f), {0.5f, 0.5f});
+    const auto point = sampleDirect(withModel(PointEmitter{{}, Vec3f(0, 2, 0), Rgb(3.0f)}), Vec3f(0.0f), {0.5f, 0.5f});
     ASSERT_TRUE(point);
     EXPECT_FLOAT_EQ(point->weight.x, 0.75f);
     EXPECT_FLOAT_EQ(point->distance, 2.0f);
@@ -134,7 +134,7 @@ TEST(Emitter, ConnectionsGiveTheIrradianceOfClosedForms) {
 
     // Irradiance under a disk of radius R at height h: pi L R^2 / (R^2 + h^2).
     Shape disk = Disk{Vec3f(0, 2, 0), 1.5f, Frame(Vec3f(0, -1, 0)), 0.0f};
-    const Emitter lamp = withModel(AreaEmitter{&disk, 0, Texture(4.0f), std::make_shared<const AreaSampler>(disk)});
+    const Emitter lamp = withModel(AreaEmitter{{}, &disk, 0, Texture(4.0f), std::make_shared<const AreaSampler>(disk)});
     double sum = 0.0, squared = 0.0;
     constexpr int Count = 200000;
     for (uint64_t i = 0; i < Count; ++i) {
@@ -154,7 +154,7 @@ TEST(Emitter, DirectionsStayInTheConeWithItsDensity) {
     const QuadLamp quad;
     const ConeDiskLamp coneDisk;
     Sampler sampler(8, RandomStream::Test, 0, 0);
-    for (const Emitter& emitter : {withModel(PointEmitter{Vec3f(0.0f), Rgb(3.0f)}), withModel(spot()), quad.emitter,
+    for (const Emitter& emitter : {withModel(PointEmitter{{}, Vec3f(0.0f), Rgb(3.0f)}), withModel(spot()), quad.emitter,
                                    coneDisk.emitter, withModel(makeInfiniteSphere(Texture(2.0f), Frame(), true))})
         for (int i = 0; i < 100; ++i) {
             const Vec2f u = sampler.next2D();

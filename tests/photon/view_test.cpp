@@ -105,15 +105,15 @@ TEST(EmissionDirections, FollowTheirDensity) {
     SurfaceSample start{};
     start.normal = Vec3f(0.48f, -0.6f, 0.64f);
     Emitter emitter;
-    emitter.model = PointEmitter{Vec3f(0.0f), White};
+    emitter.model = PointEmitter{{}, Vec3f(0.0f), White};
     EXPECT_GT(pValue(EmissionDirections(emitter, start)), test::SmallestPValue);
     for (const float coneAngle : {90.0f, 60.0f, 30.0f}) {
         const Shape disk = makeDisk(Transform{}, coneAngle);
-        emitter.model = AreaEmitter{&disk, 0, Texture(1.0f), nullptr};
+        emitter.model = AreaEmitter{{}, &disk, 0, Texture(1.0f), nullptr};
         EXPECT_GT(pValue(EmissionDirections(emitter, start)), test::SmallestPValue) << coneAngle;
     }
     for (const float cosOuter : {-0.3f, 0.5f, 0.9f}) {
-        emitter.model = SpotEmitter{Vec3f(0.0f), start.normal, White, 0.95f, cosOuter};
+        emitter.model = SpotEmitter{{}, Vec3f(0.0f), start.normal, White, 0.95f, cosOuter};
         EXPECT_GT(pValue(EmissionDirections(emitter, start)), test::SmallestPValue) << cosOuter;
     }
 }
@@ -125,7 +125,7 @@ TEST(EmissionDirections, FollowTheirDensityTowardsABody) {
     const transport::MediumSphere body{Vec3f(-3.0f, 3.0f, -3.0f), 1.0f}, around{Vec3f(0.1f, 0.0f, 0.0f), 1.0f};
     const std::vector<transport::MediumSphere> bodies = {body, around};
     Emitter emitter;
-    emitter.model = PointEmitter{Vec3f(0.0f), White};
+    emitter.model = PointEmitter{{}, Vec3f(0.0f), White};
     const EmissionDirections point(emitter, start, bodies);
     const darts::Vec3 axis = darts::vec3(body.centre.normalized());
     const double widest = 1.0 - std::sqrt(1.0 - 1.0 / 27.0);
@@ -143,7 +143,7 @@ TEST(EmissionDirections, FollowTheirDensityTowardsABody) {
     EXPECT_NEAR(point.pdf(axis), 0.8 * 0.25 * double(InvPi) + 0.2 / (2.0 * double(Pi) * widest), 1e-3);
     // Behind a surface's back there is nothing to light.
     const Shape disk = makeDisk(Transform{}, 90.0f);
-    emitter.model = AreaEmitter{&disk, 0, Texture(1.0f), nullptr};
+    emitter.model = AreaEmitter{{}, &disk, 0, Texture(1.0f), nullptr};
     EXPECT_NEAR(EmissionDirections(emitter, start, bodies).pdf(darts::vec3(start.normal)), InvPi, 1e-5f);
 }
 
@@ -169,13 +169,17 @@ TEST(EmissionDirections, HaveADensityWhereverTheyAreDrawn) {
 TEST(EmissionDirections, CarryThePowerOfTheEmitter) {
     std::vector<Emitter> emitters(3);
     const Shape disk = makeDisk(Transform{}, 40.0f);
-    emitters[2].model = AreaEmitter{&disk, 0, Texture(1.0f), std::make_shared<const AreaSampler>(disk)};
-    emitters[0].model = PointEmitter{Vec3f(0.0f), White};
-    emitters[1].model = SpotEmitter{Vec3f(0.0f), Vec3f(0.48f, -0.6f, 0.64f), White, 0.9f, 0.6f};
+    emitters[2].model = AreaEmitter{{}, &disk, 0, Texture(1.0f), std::make_shared<const AreaSampler>(disk)};
+    emitters[0].model = PointEmitter{{}, Vec3f(0.0f), White};
+    emitters[1].model = SpotEmitter{{}, Vec3f(0.0f), Vec3f(0.48f, -0.6f, 0.64f), White, 0.9f, 0.6f};
     // The cosine tells the edge of a narrow cone in ten steps.
     for (const Vec3f& axis : {Vec3f(2.0f, 4.0f, 2.0f), Vec3f(-1.0f, 2.0f, 5.0f), Vec3f(3.0f, -1.0f, 0.2f)})
-        emitters.push_back(Emitter{"", SpotEmitter{Vec3f(0.0f), axis.normalized(), White,
-                                                   std::cos(0.135f * Pi / 180.0f), std::cos(0.15f * Pi / 180.0f)}});
+        emitters.push_back(Emitter{"", SpotEmitter{{},
+                                                   Vec3f(0.0f),
+                                                   axis.normalized(),
+                                                   White,
+                                                   std::cos(0.135f * Pi / 180.0f),
+                                                   std::cos(0.15f * Pi / 180.0f)}});
     const std::vector<transport::MediumSphere> bodies = {{Vec3f(1.0f, -4.0f, 3.0f), 0.6f},
                                                          {Vec3f(1.0f, 3.0f, 0.5f), 0.8f}};
     for (const bool towards : {false, true})

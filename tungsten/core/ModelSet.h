@@ -14,6 +14,8 @@ namespace tungsten {
 template <typename... Models>
 struct ModelSet {
     using Variant = std::variant<Models...>;
+    template <typename Another>
+    using With = std::variant<Models..., Another>;
 
     /// What scene files call them, in the order of the alphabet.
     static std::vector<std::string> types() {

@@ -1,40 +1,67 @@
-// Environments: radiance from infinitely far away, constant or a bitmap.
+#include "tungsten/emitter/Infinite.h"
 
 #include "tungsten/core/Warp.h"
-#include "tungsten/emitter/Power.h"
-#include "tungsten/emitter/Sampling.h"
+#include "tungsten/emitter/EmitterReader.h"
 
 namespace tungsten {
 
-namespace {
-
 /// u = atan2(z, x) / 2pi + 1/2, v = acos(-y) / pi in the local frame: +y is the top row (docs/scene-format.md,
 /// section 7.3).
-Vec2f uvOf(const InfiniteSphereEmitter& sky, const Vec3f& direction) {
-    const Vec3f local = sky.frame.toLocal(direction);
+Vec2f InfiniteSphereEmitter::uvOf(const Vec3f& direction) const {
+    const Vec3f local = frame.toLocal(direction);
     return {std::atan2(local.z, local.x) * 0.5f * InvPi + 0.5f, std::acos(std::clamp(-local.y, -1.0f, 1.0f)) * InvPi};
 }
 
-Vec3f directionOf(const InfiniteSphereEmitter& sky, const Vec2f& uv, float& sinTheta) {
+Vec3f InfiniteSphereEmitter::directionOf(const Vec2f& uv, float& sinTheta) const {
     const float phi = (uv.x - 0.5f) * 2.0f * Pi, theta = uv.y * Pi;
     sinTheta = std::sin(theta);
-    return sky.frame.toWorld(Vec3f(std::cos(phi) * sinTheta, -std::cos(theta), std::sin(phi) * sinTheta));
+    return frame.toWorld(Vec3f(std::cos(phi) * sinTheta, -std::cos(theta), std::sin(phi) * sinTheta));
 }
 
-/// Direction toward the sky and its density per solid angle.
-Vec3f sampleSky(const InfiniteSphereEmitter& sky, const Vec2f& u, float& pdf) {
-    if (!sky.distribution) {
-        pdf = warp::squareToSpherePdf();
+Vec3f InfiniteSphereEmitter::sample(const Vec2f& u, float& density) const {
+    if (!distribution) {
+        density = warp::squareToSpherePdf();
         return warp::squareToSphere(u);
     }
-    float density = 0.0f, sinTheta = 0.0f;
-    const Vec2f uv = sky.distribution->sample(u, density);
-    const Vec3f direction = directionOf(sky, uv, sinTheta);
-    pdf = sinTheta > 0.0f ? density / (2.0f * Pi * Pi * sinTheta) : 0.0f;
+    float uvDensity = 0.0f, sinTheta = 0.0f;
+    const Vec2f uv = distribution->sample(u, uvDensity);
+    const Vec3f direction = directionOf(uv, sinTheta);
+    density = sinTheta > 0.0f ? uvDensity / (2.0f * Pi * Pi * sinTheta) : 0.0f;
     return direction.normalized();
 }
 
-} // namespace
+EmissionSample InfiniteSphereEmitter::sampleEmission(const Vec2f& uPosition, const Vec2f& uDirection) const {
+    float density = 0.0f;
+    const Vec3f toSky = sample(uDirection, density);
+    const Vec2f disk = warp::squareToDisk(uPosition) * sceneRadius;
+    const Frame around(-toSky);
+    const Vec3f origin = sceneCentre + toSky * (2.0f * sceneRadius) + around.s * disk.x + around.t * disk.y;
+    const Rgb emitted = radiance.rgb(uvOf(toSky));
+    const Rgb power = density > 0.0f ? emitted * (Pi * sqr(sceneRadius) / density) : Rgb(0.0f);
+    return {{origin, -toSky}, power, density, -toSky};
+}
+
+MaybeDirect InfiniteSphereEmitter::sampleDirect(const Vec3f& receiver, const Vec2f& u) const {
+    float density = 0.0f;
+    const Vec3f direction = sample(u, density);
+    if (density <= 0.0f || !samplable) return std::nullopt;
+    return DirectSample{direction, Infinity, radiance.rgb(uvOf(direction)) / density, density, receiver};
+}
+
+float InfiniteSphereEmitter::pdf(const Vec3f& direction) const {
+    if (!distribution) return warp::squareToSpherePdf();
+    const Vec2f uv = uvOf(direction);
+    const float sinTheta = std::sin(uv.y * Pi);
+    return sinTheta > 0.0f ? distribution->pdf(uv) / (2.0f * Pi * Pi * sinTheta) : 0.0f;
+}
+
+float InfiniteSphereEmitter::pdfEmissionDirection(const SurfaceSample&, const Vec3f& direction) const {
+    return pdf(-direction);
+}
+
+Rgb InfiniteSphereEmitter::environmentRadiance(const Vec3f& direction) const {
+    return radiance.rgb(uvOf(direction));
+}
 
 InfiniteSphereEmitter makeInfiniteSphere(const Texture& radiance, const Frame& frame, bool samplable) {
     InfiniteSphereEmitter sky;
@@ -66,33 +93,14 @@ InfiniteSphereEmitter makeInfiniteSphere(const Texture& radiance, const Frame& f
     return sky;
 }
 
-EmissionSample sampleEmission(const InfiniteSphereEmitter& sky, const Vec2f& uPosition, const Vec2f& uDirection) {
-    float pdf = 0.0f;
-    const Vec3f toSky = sampleSky(sky, uDirection, pdf);
-    const Vec2f disk = warp::squareToDisk(uPosition) * sky.sceneRadius;
-    const Frame frame(-toSky);
-    const Vec3f origin = sky.sceneCentre + toSky * (2.0f * sky.sceneRadius) + frame.s * disk.x + frame.t * disk.y;
-    const Rgb radiance = sky.radiance.rgb(uvOf(sky, toSky));
-    const Rgb power = pdf > 0.0f ? radiance * (Pi * sqr(sky.sceneRadius) / pdf) : Rgb(0.0f);
-    return {{origin, -toSky}, power, pdf, -toSky};
-}
-
-std::optional<DirectSample> sampleDirect(const InfiniteSphereEmitter& sky, const Vec3f& receiver, const Vec2f& u) {
-    float pdf = 0.0f;
-    const Vec3f direction = sampleSky(sky, u, pdf);
-    if (pdf <= 0.0f || !sky.samplable) return std::nullopt;
-    return DirectSample{direction, Infinity, sky.radiance.rgb(uvOf(sky, direction)) / pdf, pdf, receiver};
-}
-
-float pdfSky(const InfiniteSphereEmitter& sky, const Vec3f& direction) {
-    if (!sky.distribution) return warp::squareToSpherePdf();
-    const Vec2f uv = uvOf(sky, direction);
-    const float sinTheta = std::sin(uv.y * Pi);
-    return sinTheta > 0.0f ? sky.distribution->pdf(uv) / (2.0f * Pi * Pi * sinTheta) : 0.0f;
-}
-
-Rgb skyRadiance(const InfiniteSphereEmitter& sky, const Vec3f& direction) {
-    return sky.radiance.rgb(uvOf(sky, direction));
+std::optional<InfiniteSphereEmitter> InfiniteSphereEmitter::read(const EmitterReader& fields) {
+    Texture radiance = fields.texture("emission", Texture(0.0f), {"radiance", "by direction, from infinitely far away"},
+                                      Range::nonNegative());
+    const Texture power = fields.texture("power", Texture(0.0f), EmitterReader::PowerMeaning, Range::nonNegative());
+    if (fields.has("power")) radiance = power.scaled(Rgb(0.25f * InvPi));
+    const bool samplable = fields.flag("sample", true, {"none", "vertices may connect to it"});
+    if (!fields.shines(radiance.maximum())) return std::nullopt;
+    return makeInfiniteSphere(radiance, fields.placement.rotation(), samplable);
 }
 
 } // namespace tungsten

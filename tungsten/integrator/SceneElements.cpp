@@ -1,7 +1,5 @@
 #include "tungsten/integrator/SceneElements.h"
 
-#include "tungsten/core/Overloaded.h"
-
 #include <algorithm>
 
 namespace tungsten {
@@ -19,10 +17,7 @@ bool varies(const Bsdf& bsdf) {
 
 /// Over a surface.
 bool varies(const Emitter& emitter) {
-    return std::visit(Overloaded{[](const AreaEmitter& area) { return !area.radiance.isConstant(); },
-                                 [](const OneOf<PointEmitter, DirectionalPointEmitter, CollimatedEmitter, SpotEmitter,
-                                                InfiniteSphereEmitter> auto&) { return false; }},
-                      emitter.model);
+    return emitter.surface() && !emitter.surface()->radiance.isConstant();
 }
 
 bool isTransparent(const Bsdf& bsdf) {

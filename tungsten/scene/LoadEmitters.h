@@ -7,12 +7,8 @@
 
 namespace tungsten {
 
-/// Types of primitives that are nothing but light sources.
-std::vector<std::string> emitterTypes();
-/// Adds the emitter if `type` is one of emitterTypes(); false otherwise.
-bool readPointOrInfiniteEmitter(LoadContext& context, const ObjectReader& reader, const std::string& type);
-/// Radiance of a surface with `emission` or `power` (power wins), or none if it is dark.
-std::optional<Texture> readAreaRadiance(LoadContext& context, const ObjectReader& reader, const Shape& shape);
+/// Adds the emitter if `type` is one of LightSources; false otherwise.
+bool readLightSource(LoadContext& context, const ObjectReader& reader, const std::string& type);
 /// `emission_time` and `pulse`: when the source's light starts.
 struct EmissionTimes {
     double start = 0.0;

@@ -115,7 +115,7 @@ void readSurface(LoadContext& context, const ObjectReader& reader, SurfaceReader
     primitive.bsdfs = context.fieldsOf(reader).bsdfs(
         "bsdf", {"none", "how it scatters light; an array goes by the mesh's materials", "white Lambert"});
     readRegions(context, reader, primitive);
-    const std::optional<Texture> radiance = readAreaRadiance(context, reader, primitive.shape);
+    const std::optional<Texture> radiance = AreaEmitter::readRadiance(context.fieldsOf(reader), primitive.shape);
     EmissionTimes times = readEmissionTimes(reader);
     if (!isUsable(primitive.shape)) {
         if (context.scene.geometry == nullptr) reader.warn("file", "the mesh has no triangles: left out");
@@ -132,7 +132,10 @@ void readSurface(LoadContext& context, const ObjectReader& reader, SurfaceReader
     emitter.pulse = std::move(times.pulse);
     emitter.medium = stored.outside.medium;
     emitter.vacuumSpeed = stored.outside.medium < 0 ? stored.outside.speed : -1.0f;
-    emitter.model = AreaEmitter{&stored.shape, uint32_t(context.scene.primitives.size() - 1), *radiance,
+    emitter.model = AreaEmitter{{},
+                                &stored.shape,
+                                uint32_t(context.scene.primitives.size() - 1),
+                                *radiance,
                                 std::make_shared<const AreaSampler>(stored.shape)};
     context.scene.emitters.push_back(std::move(emitter));
     context.emitters.push_back(reader);
@@ -146,7 +149,7 @@ void readPrimitive(LoadContext& context, const ObjectReader& reader) {
     const auto surface = surfaceReaders().find(type);
     if (surface != surfaceReaders().end()) {
         readSurface(context, reader, surface->second);
-    } else if (!readPointOrInfiniteEmitter(context, reader, type)) {
+    } else if (!readLightSource(context, reader, type)) {
         reader.problem("type", refusal(type, "'" + type + "'", primitiveTypes(), unsupportedPrimitives()));
         return;
     }
@@ -156,7 +159,7 @@ void readPrimitive(LoadContext& context, const ObjectReader& reader) {
 } // namespace
 
 std::vector<std::string> primitiveTypes() {
-    std::vector<std::string> types = emitterTypes();
+    std::vector<std::string> types = LightSources::types();
     for (const auto& [type, reader] : surfaceReaders()) types.push_back(type);
     return types;
 }

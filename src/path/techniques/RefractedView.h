@@ -6,6 +6,7 @@
 
 #include "transport/BoundedMedium.h"
 
+#include "tungsten/core/Overloaded.h"
 #include "tungsten/core/Types.h"
 #include "tungsten/geometry/AnalyticShape.h"
 

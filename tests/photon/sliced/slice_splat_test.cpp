@@ -36,7 +36,7 @@ Scene fogAtGate(const SplatCase& c) {
         scene.media.push_back(fog);
     }
     scene.cameraRegion.speed = c.speed;
-    scene.emitters.push_back({"lamp", PointEmitter{Vec3f(1.0f, 2.5f, 3.5f), Rgb(3.0f, 2.0f, 1.0f)}});
+    scene.emitters.push_back({"lamp", PointEmitter{{}, Vec3f(1.0f, 2.5f, 3.5f), Rgb(3.0f, 2.0f, 1.0f)}});
     scene.transport.minBounces = 2;
     scene.transport.maxBounces = 7;
     scene.transport.cameraUnwarped = c.unwarped;
