@@ -54,8 +54,8 @@ REMOVALS = [
         ("src/photon/primitives/beams/Beams.cpp", "* henyeyGreenstein(r.g, w, dx, dy, dz);", "* (0.25f * InvPi);"),
     ]),
     ("colour of media", [*PATHS, *MAPS], [
-        ("tungsten/medium/Medium.cpp", "[[gnu::noinline]] Rgb", "[[maybe_unused]] Rgb"),
-        ("tungsten/medium/Medium.cpp", "grey_ ? Rgb(transmittanceOf(sigmaT().x, distance)) : transmittanceOf(sigmaT(), distance);",
+        ("tungsten/medium/Homogeneous.cpp", "[[gnu::noinline]] Rgb", "[[maybe_unused]] Rgb"),
+        ("tungsten/medium/Homogeneous.cpp", "grey_ ? Rgb(transmittanceOf(sigmaT().x, distance)) : transmittanceOf(sigmaT(), distance);",
          "Rgb(transmittanceOf(sigmaT().x, distance));"),
         ("src/photon/primitives/points/Points.cpp", "if (k > 0 && !medium.grey) weight =", "if (false) weight ="),
     ]),

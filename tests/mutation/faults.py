@@ -21,11 +21,11 @@ FAULTS = [
      [("film_tests", "Film.MomentsMatchDirectFormulas")]),
     ("tungsten/film/Film.cpp", "float(sums.values[i] / frames_)", "float(sums.values[i])",
      [("film_tests", "Film.WholeGateIsTheMeanOverFrames")]),
-    ("tungsten/medium/Medium.cpp", "medium.sigmaS() / sigma, density.x", "Rgb(1.0f), density.x",
+    ("tungsten/medium/Homogeneous.cpp", "sigmaS_ / sigma, density.x", "Rgb(1.0f), density.x",
      [("path_tests", "DeltaGates/GuidedOrders.MatchVerifiedValues/*")]),
-    ("tungsten/medium/Medium.cpp", "true, transmittance / probability, probability", "true, transmittance, probability",
+    ("tungsten/medium/Homogeneous.cpp", "true, transmittance / probability, probability", "true, transmittance, probability",
      [("medium_tests", "Medium.FlightsEstimateTheCollisionIntegralPerChannel")]),
-    ("tungsten/medium/Medium.cpp", "-std::log1p(-u) / sigma[chosen]", "-std::log1p(-u) / sigma[0]",
+    ("tungsten/medium/Homogeneous.cpp", "-std::log1p(-u) / sigma[chosen]", "-std::log1p(-u) / sigma[0]",
      [("medium_tests", "Medium.FlightsEstimateTheCollisionIntegralPerChannel")]),
     ("tungsten/medium/PhaseFunction.cpp", "2.0f * u * sqr(1.0f - strength) *", "2.0f * u * (1.0f - strength) *",
      [("path_tests", "BoxGates/GuidedOrders.MatchVerifiedValues/*")]),
@@ -73,7 +73,7 @@ FAULTS = [
      [("path_tests", "LightTracer.ShowsSurfacesThroughALens")]),
     ("src/path/PathVisitor.cpp", "powerHeuristic(pdf * choice->probability,", "powerHeuristic(pdf,",
      [("path_tests", "Energy.RoomWithAFixedNumberOfBounces")]),
-    ("tungsten/medium/Medium.cpp", "return {distance, true, Rgb(1.0f), transmittance.x, channels};", "return {distance, true, transmittance, transmittance.x, channels};",
+    ("tungsten/medium/Homogeneous.cpp", "return {distance, true, Rgb(1.0f), transmittance.x, channels};", "return {distance, true, transmittance, transmittance.x, channels};",
      [("path_tests", "SpecularTime.UnwarpedFogShowsInAMirrorFarFromTheLight")]),  # grey media: surfaces are weakened twice
     ("src/path/PathVisitor.cpp", "limits().renders(path.interactions - 1)", "limits().renders(path.interactions - 2)",
      [("path_tests", "LightTracer.ShowsSurfacesInSteadyState")]),
@@ -281,11 +281,11 @@ FAULTS = [
      [("transport_tests", "OwnSteps.DirectionsAreDrawnWithTheNumbersOfTheirVertex")]),  # phase functions have no density
     ("src/transport/PlainSteps.h", "flight.weight = ahead.medium->transmittance(ahead.reach());", ";",
      [("transport_tests", "OwnSteps.StraightOnesAreWeakenedByWhatTheyCross")]),  # straight ways cross media unweakened
-    ("tungsten/medium/Medium.cpp", "channels * density / pdf};", "channels};",
+    ("tungsten/medium/Homogeneous.cpp", "channels * density / pdf};", "channels};",
      [("medium_tests", "Medium.FlightsOfAPathAreWeighedByChannelsOverAllOfIt")]),  # densities of channels forget collisions
-    ("tungsten/medium/Medium.cpp", "probability, channels * transmittance / probability};", "probability, channels};",
+    ("tungsten/medium/Homogeneous.cpp", "probability, channels * transmittance / probability};", "probability, channels};",
      [("medium_tests", "Medium.FlightsOfAPathAreWeighedByChannelsOverAllOfIt")]),  # densities of channels forget surfaces
-    ("tungsten/medium/Medium.cpp", "while (index < 2 && !(rest < double(channels[index]))) rest -= double(channels[index++]);", "while (index < 2 && !(rest < 1.0)) rest -= 1.0, ++index;",
+    ("tungsten/medium/Homogeneous.cpp", "while (index < 2 && !(rest < double(channels[index]))) rest -= double(channels[index++]);", "while (index < 2 && !(rest < 1.0)) rest -= 1.0, ++index;",
      [("medium_tests", "Medium.FlightDistancesFollowTheirDensity")]),  # channels are chosen evenly at every flight
     # Camera paths, plain
     ("src/transport/Walk.h", "path.flights = path.inARow = 0;", "path.inARow = 0;",
@@ -626,9 +626,9 @@ FAULTS = [
     ("tungsten/bsdf/Conductor.cpp", "fresnelConductor(eta, k, wi.dot(m));", "fresnelConductor(eta, k, wi.z);",
      [("bsdf_tests", "Bsdf.ReflectionIsReciprocal")]),  # rough metals take the Fresnel term at the wrong angle
     # tungsten/medium
-    ("tungsten/medium/Medium.cpp", "const float pdf = meanComponent(channels * density);", "const float pdf = meanComponent(density);",
+    ("tungsten/medium/Homogeneous.cpp", "const float pdf = meanComponent(channels * density);", "const float pdf = meanComponent(density);",
      [("medium_tests", "Medium.FlightsEstimateTheCollisionIntegralPerChannel")]),  # coloured fog: wrong colours
-    ("tungsten/medium/Medium.cpp", "Rgb(isVacuum() ? 1.0f : 0.0f)", "Rgb(1.0f)",
+    ("tungsten/medium/Homogeneous.cpp", "Rgb(isVacuum() ? 1.0f : 0.0f)", "Rgb(1.0f)",
      [("medium_tests", "Medium.AbsorptionAloneAndEmptinessAreCrossedAnalytically")]),  # the environment shines through endless fog
     ("tungsten/medium/PhaseFunction.cpp", "const float q = 2.0f * (1.0f - 2.0f * u);", "const float q = 1.0f - 2.0f * u;",
      [("medium_tests", "PhaseFunction.SamplesFollowTheDensity")]),  # Rayleigh directions do not follow their density
@@ -645,9 +645,9 @@ FAULTS = [
      [("scene_tests", "TimeProfiles.AResponseBringsItsOwnGate")]),  # gaussian pulses too narrow
     ("tungsten/scene/LoadTimeProfile.cpp", "profile.times.push_back(origin + x * unit);", "profile.times.push_back(x * unit);",
      [("scene_tests", "TimeProfiles.AResponseBringsItsOwnGate")]),  # pulses ignore their centre and start
-    ("tungsten/scene/LoadMedia.cpp", "medium.model = Homogeneous(sigmaA, sigmaS);", "medium.model = Homogeneous(sigmaS, sigmaA);",
+    ("tungsten/medium/Homogeneous.cpp", "return Homogeneous(sigmaA, sigmaS);", "return Homogeneous(sigmaS, sigmaA);",
      [("transport_tests", "EscapeModels.NoneWhereNothingEndsOrThePolicyLeavesThemOut")]),  # sigma_a and sigma_s swapped
-    ("tungsten/scene/LoadMedia.cpp", "medium.guided = type == \"guided_homo\";", "medium.guided = type != \"guided_homo\";",
+    ("tungsten/scene/LoadMedia.cpp", "medium.guided = type == GuidedMedium;", "medium.guided = type == Homogeneous::Type;",
      [("path_tests", "DirectLight.EscapingRaysSeeTheLastEnvironmentOutsideMediaOnly")]),  # the published method guides the media that do not ask for it
     ("tungsten/scene/LoadPrimitives.cpp", "emitter.medium = stored.outside.medium;", "emitter.medium = stored.inside.medium;",
      [("scene_tests", "SceneWarnings.LightsInAMediumTheyDoNotNameAreWarnedAbout")]),  # light of surfaces starts in the medium behind them

@@ -18,7 +18,7 @@ HOST = {
     "geometry": {"core"},
     "texture": {"core", "reader", "image"},
     "bsdf": {"core", "reader", "texture"},
-    "medium": {"core"},
+    "medium": {"core", "reader"},
     "camera": {"core"},
     "emitter": {"core", "reader", "geometry", "texture"},
     "scene": SCENE - {"scene"},

@@ -17,11 +17,13 @@ struct ModelSet {
     template <typename Another>
     using With = std::variant<Models..., Another>;
 
-    /// What scene files call them, in the order of the alphabet.
+    /// What scene files call them, in the order of the set.
+    static std::vector<std::string> names() { return {Models::Type...}; }
+    /// The same in the order of the alphabet.
     static std::vector<std::string> types() {
-        std::vector<std::string> names{Models::Type...};
-        std::sort(names.begin(), names.end());
-        return names;
+        std::vector<std::string> sorted = names();
+        std::sort(sorted.begin(), sorted.end());
+        return sorted;
     }
     static bool has(const std::string& type) { return ((type == Models::Type) || ...); }
     /// What `read.operator()<Model>()` makes of the model of that type, which the set has.

@@ -1,42 +1,16 @@
 #pragma once
-// Participating media: a closed set of models, and what a region filled with one has besides.
+// Participating media: the set of models, and what a region filled with one has besides.
 
-#include "tungsten/core/Overloaded.h"
-#include "tungsten/core/Random.h"
+#include "tungsten/medium/Homogeneous.h"
 #include "tungsten/medium/PhaseFunction.h"
-
-#include <string>
 
 namespace tungsten {
 
-/// The same everywhere. Coefficients per scene unit of length (density already multiplied in), per RGB channel.
-class Homogeneous {
-  public:
-    Homogeneous() : Homogeneous(Rgb(0.0f), Rgb(0.0f)) {}
-    Homogeneous(const Rgb& sigmaA, const Rgb& sigmaS)
-        : sigmaA_(sigmaA), sigmaS_(sigmaS), grey_(hasEqualChannels(sigmaA) && hasEqualChannels(sigmaS)) {}
-
-    [[nodiscard]] const Rgb& sigmaA() const { return sigmaA_; }
-    [[nodiscard]] const Rgb& sigmaS() const { return sigmaS_; }
-    [[nodiscard]] Rgb sigmaT() const { return sigmaA_ + sigmaS_; }
-    [[nodiscard]] bool scatters() const { return !isBlack(sigmaS_); }
-    [[nodiscard]] bool isVacuum() const { return isBlack(sigmaT()); }
-    [[nodiscard]] bool isGrey() const { return grey_; }
-    /// e^{-sigmaT d}; zero at infinity unless the medium is empty.
-    [[nodiscard]] Rgb transmittance(float distance) const;
-
-  private:
-    [[nodiscard]] static bool hasEqualChannels(const Rgb& sigma) { return sigma.x == sigma.y && sigma.y == sigma.z; }
-
-    Rgb sigmaA_, sigmaS_;
-    bool grey_; ///< asked in every flight
-};
-
-using MediumModel = std::variant<Homogeneous>;
+using Media = MediumSet<Homogeneous>;
 
 struct Medium {
     std::string name;
-    MediumModel model;
+    Media::Variant model;
     PhaseFunction phase;
     float speedOfLight = 1.0f;
     int maxBounces = 1024;    ///< distances sampled since the last surface before a path ends
@@ -47,7 +21,7 @@ struct Medium {
     /// Its coefficients are the same everywhere. Guidance, splats and photon beams take that for granted: plans decline
     /// them elsewhere.
     [[nodiscard]] bool isHomogeneous() const {
-        return std::visit(Overloaded{[](const Homogeneous&) { return true; }}, model);
+        return std::visit([](const auto& m) { return m.IsHomogeneous; }, model);
     }
     [[nodiscard]] bool scatters() const {
         return std::visit([](const auto& m) { return m.scatters(); }, model);
@@ -69,21 +43,6 @@ struct Medium {
     [[nodiscard]] const Rgb& sigmaA() const { return homogeneous().sigmaA(); }
     [[nodiscard]] const Rgb& sigmaS() const { return homogeneous().sigmaS(); }
     [[nodiscard]] Rgb sigmaT() const { return homogeneous().sigmaT(); }
-};
-
-/// How dense the flights of a path so far would be, were each drawn by one channel's coefficients: by channel, over
-/// their mean, with which the path is weighed. No contribution to a channel then exceeds three times what paths drawn
-/// by that channel alone would bring (balance heuristic over whole paths: Wilkie et al. 2014). Even at a path's start,
-/// and as long as all media are grey.
-using ChannelDensities = Rgb;
-
-/// Outcome of a plain free flight up to `tMax`.
-struct FlightSample {
-    float distance;            ///< of the collision, or tMax
-    bool exited;               ///< reached tMax
-    Rgb weight;                ///< sigmaS T / pdf at a collision; T / probability when exited
-    float pdf;                 ///< per length at a collision; probability when exited
-    ChannelDensities channels; ///< of the path with this flight
 };
 
 /// Draws a free flight after those of `channels`: by one channel, chosen in proportion to these densities, as if one

@@ -1,5 +1,7 @@
 #include "tungsten/medium/PhaseFunction.h"
 
+#include "tungsten/reader/ObjectReader.h"
+
 namespace tungsten {
 
 namespace {
@@ -24,6 +26,10 @@ float HenyeyGreenstein::sample(float u) const {
     // negative.
     const float strength = std::abs(g), b = 1.0f - strength + 2.0f * strength * (1.0f - u);
     return std::min(2.0f * u * sqr(1.0f - strength) * (1.0f + strength * (1.0f - u)) / (b * b), 2.0f);
+}
+
+HenyeyGreenstein HenyeyGreenstein::read(const ObjectReader& fields) {
+    return {float(fields.number("g", 0.0, {"none", "mean cosine; above 0 light goes on forward"}, {-0.999, 0.999}))};
 }
 
 float Rayleigh::eval(float h) const {

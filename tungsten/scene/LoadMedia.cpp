@@ -5,14 +5,17 @@ namespace tungsten {
 
 namespace {
 
+/// Names under which the models ask for guidance, too.
+constexpr const char* GuidedMedium = "guided_homo";
+const std::vector<std::string> GuidedPhases{"ida", "integrated_da"};
+
 PhaseFunction readPhaseFunction(const ObjectReader& phase, Medium& medium) {
-    const std::string type = phase.choice("type", "isotropic", phaseFunctionTypes(), {"none", "which phase function"});
-    PhaseFunction result{Isotropic{}};
-    if (type == "rayleigh") result.model = Rayleigh{};
-    const bool guided = type == "ida" || type == "integrated_da";
-    if (type == "henyey_greenstein" || guided)
-        result.model = HenyeyGreenstein{
-            float(phase.number("g", 0.0, {"none", "mean cosine; above 0 light goes on forward"}, {-0.999, 0.999}))};
+    const std::string type =
+        phase.choice("type", Isotropic::Type, phaseFunctionTypes(), {"none", "which phase function"});
+    const bool guided = std::find(GuidedPhases.begin(), GuidedPhases.end(), type) != GuidedPhases.end();
+    const PhaseFunction result{PhaseFunctions::read(guided ? HenyeyGreenstein::Type : type, [&]<typename Model> {
+        return PhaseFunctions::Variant(Model::read(phase));
+    })};
     if (guided) {
         medium.guidedPhase = true;
         phase.accept({"table_path", "alpha", "dT_start", "dT_end", "max_T"});
@@ -39,24 +42,18 @@ void requireExponentialTransmittance(const ObjectReader& medium) {
 
 Medium readMedium(const ObjectReader& reader) {
     Medium medium;
-    const std::string type =
-        reader.choice("type", "homogeneous", mediumTypes(), {"none", "which medium", "required"}, unsupportedMedia());
+    const std::string type = reader.choice("type", Homogeneous::Type, mediumTypes(),
+                                           {"none", "which medium", "required"}, unsupportedMedia());
     medium.name = reader.text("name", "", NameMeaning);
     medium.path = reader.path();
     if (!reader.has("type")) reader.problem("type", "a medium needs a type: " + listOf(mediumTypes()));
-    const float density =
-        float(reader.number("density", 1.0, {"none", "factor on both coefficients"}, Range::nonNegative()));
-    const Rgb sigmaA =
-        reader.rgb("sigma_a", Rgb(0.0f), {"1/length", "absorption coefficient"}, Range::nonNegative()) * density;
-    const Rgb sigmaS =
-        reader.rgb("sigma_s", Rgb(0.0f), {"1/length", "scattering coefficient"}, Range::nonNegative()) * density;
-    medium.model = Homogeneous(sigmaA, sigmaS);
+    medium.guided = type == GuidedMedium;
+    medium.model = Media::read(medium.guided ? Homogeneous::Type : type,
+                               [&]<typename Model> { return Media::Variant(Model::read(reader)); });
     medium.speedOfLight = float(reader.number(
         "speed_of_light", 1.0, {"length/time", "speed at which light travels in it"}, Range::positiveMeasure()));
     medium.maxBounces =
         int(reader.integer("max_bounces", 1024, {"none", "scatterings after a surface at which paths end"}, {0, 2e9}));
-    medium.guided = type == "guided_homo";
-    medium.phase = PhaseFunction{Isotropic{}};
     constexpr Meaning phaseMeaning{"none", "how directions change; {\"type\": ...}", "isotropic"};
     if (reader.isText("phase_function"))
         reader.problem("phase_function", "expected an object with a type, found a string");
@@ -106,11 +103,15 @@ std::string unknownMedium(const LoadContext& context, const ObjectReader& owner,
 } // namespace
 
 std::vector<std::string> mediumTypes() {
-    return {"homogeneous", "guided_homo"};
+    std::vector<std::string> types = Media::names();
+    types.emplace_back(GuidedMedium);
+    return types;
 }
 
 std::vector<std::string> phaseFunctionTypes() {
-    return {"isotropic", "henyey_greenstein", "rayleigh", "ida", "integrated_da"};
+    std::vector<std::string> types = PhaseFunctions::names();
+    types.insert(types.end(), GuidedPhases.begin(), GuidedPhases.end());
+    return types;
 }
 
 void readMedia(LoadContext& context, const ObjectReader& root) {
