@@ -39,7 +39,7 @@ struct Setting {
         scene.transport.gate =
             gate.delta ? TimeGate{false, true, time, 0.0, 1} : TimeGate{false, false, time, width, 1};
         sensor.gate = gate.delta ? TimeGate{false, false, time - 0.5 * width, width, 1} : scene.transport.gate;
-        scene.camera.model = Orthographic{1.0f}; // every record may be seen everywhere
+        scene.camera.model = Orthographic{{}, 1.0f}; // every record may be seen everywhere
         Sampler sampler(1, RandomStream::Test, 0, 0);
         for (size_t i = 0; i < Records; ++i) {
             SliceRecord r{};

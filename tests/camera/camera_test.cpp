@@ -52,7 +52,7 @@ TEST(Camera, TheApertureIsTheLensInTheWorld) {
 
 TEST(Camera, OrthographicSpansTwiceItsSize) {
     Camera camera = lookingAlongMinusZ();
-    camera.model = Orthographic{2.0f};
+    camera.model = Orthographic{{}, 2.0f};
     const Ray corner = camera.generateRay({0, 0}, {0.5f, 0.5f}, {0.5f, 0.5f});
     EXPECT_NEAR(corner.origin.x, 1.0f - 4.0f + 0.1f, 1e-5f);
     EXPECT_NEAR(corner.origin.y, 2.0f + 2.0f - 0.1f, 1e-5f);
@@ -82,7 +82,7 @@ TEST(Camera, ThinLensFocusesAndLeavesOutHalfAPixel) {
 TEST(Camera, ProjectionInvertsRays) {
     for (const bool orthographic : {false, true}) {
         Camera camera = lookingAlongMinusZ();
-        if (orthographic) camera.model = Orthographic{1.5f};
+        if (orthographic) camera.model = Orthographic{{}, 1.5f};
         for (const Vec2i& pixel : {Vec2i(0, 0), Vec2i(39, 19), Vec2i(13, 4)}) {
             const Ray ray = camera.generateRay(pixel, {0.5f, 0.5f}, {0.5f, 0.5f});
             const auto raster = camera.project(ray.at(7.0f));
@@ -103,7 +103,7 @@ std::vector<Camera> unlikeCameras() {
     pinhole.model = Pinhole{70.0f};
     lens.model = ThinLens{60.0f, 2.5f, 0.4f};
     lens.toWorld.y += Vec3f(0.1f, 0.0f, 0.0f);
-    orthographic.model = Orthographic{1.5f};
+    orthographic.model = Orthographic{{}, 1.5f};
     return {pinhole, lens, orthographic};
 }
 

@@ -637,7 +637,7 @@ FAULTS = [
      [("scene_tests", "SceneLoader.FieldsBecomeTypedValues")]),  # gate starts at its centre
     ("tungsten/scene/LoadSettings.cpp", "transport.gate = {false, false, start, end - start, 1};", "transport.gate = {false, false, start, end, 1};",
      [("scene_tests", "TimeProfiles.AResponseBringsItsOwnGate")]),  # gate of a response is too wide
-    ("tungsten/scene/LoadCamera.cpp", "placement.vector(block.vec3(", "(block.vec3(",
+    ("tungsten/camera/Detectors.cpp", "placement.vector(block.vec3(", "(block.vec3(",
      [("scene_tests", "Detectors.TurnWithTheirTransform")]),  # detectors do not turn with their transform
     ("tungsten/texture/ModelReader.cpp", "(lookup.clamp ? 'c' : '-') +", "'-' +",
      [("scene_tests", "SceneLoader.ABitmapThatIsClampedAndOneThatIsNotAreTwo")]),  # a clamped texture and a repeated one of the same file are one
@@ -704,9 +704,9 @@ FAULTS = [
     ("tungsten/texture/Texture.cpp", "result.factor = result.factor * by;", "result.factor = by;",
      [("texture_tests", "Texture.ConstantsAndScaling")]),  # a texture scaled twice keeps the last factor
     # tungsten/camera
-    ("tungsten/camera/Camera.cpp", "through * (lens.focusDistance / through.z)", "through * lens.focusDistance",
+    ("tungsten/camera/Perspective.cpp", "ahead * (distanceOfFocus / ahead.z)", "ahead * distanceOfFocus",
      [("camera_tests", "Camera.SensorSamplesAreItsOwnRays")]),  # thin lens is sharp at the wrong distance
-    ("tungsten/camera/Camera.cpp", "cubed = along.z * along.z * along.z;", "cubed = along.z * along.z;",
+    ("tungsten/camera/Perspective.cpp", "cubed = along.z * along.z * along.z;", "cubed = along.z * along.z;",
      [("camera_tests", "Camera.SensorWeightsAreTheDensityOfRays")]),  # light tracer: brightness of the image falls off wrongly with distance
     ("tungsten/camera/ReconstructionFilter.cpp", "* 0.5f * float(Bins) / halfWidth();", "* float(Bins) / halfWidth();",
      [("path_tests", "LightTracer.ShowsSurfacesInSteadyState")]),  # light tracer: four times too bright under tabulated filters

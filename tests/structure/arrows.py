@@ -19,7 +19,7 @@ HOST = {
     "texture": {"core", "reader", "image"},
     "bsdf": {"core", "reader", "texture"},
     "medium": {"core", "reader"},
-    "camera": {"core"},
+    "camera": {"core", "reader"},
     "emitter": {"core", "reader", "geometry", "texture"},
     "scene": SCENE - {"scene"},
     "integrator": SCENE,

@@ -1,39 +1,18 @@
 #pragma once
-// Cameras: pinhole, thin lens, orthographic, detectors. Raster: pixel (0,0) is the top left, y grows downward.
+// Cameras: the set of models, and one of them where it stands.
 
 #include "tungsten/camera/Detectors.h"
+#include "tungsten/camera/Orthographic.h"
+#include "tungsten/camera/Perspective.h"
 #include "tungsten/camera/ReconstructionFilter.h"
-#include "tungsten/core/Transform.h"
-
-#include <cmath>
-#include <optional>
-#include <variant>
 
 namespace tungsten {
 
-/// Horizontal; both are set by the constructor alone.
-struct FieldOfView {
-    float fovDegrees;
-    float planeDistance; ///< of the image plane that spans [-1, 1]: 1 / tan(fov / 2)
+using Cameras = CameraSet<Pinhole, ThinLens, Orthographic, Detectors>;
 
-    FieldOfView(float degrees = 60.0f) : fovDegrees(degrees), planeDistance(1.0f / std::tan(degrees * Pi / 360.0f)) {}
-};
-struct Pinhole : FieldOfView {};
-struct ThinLens : FieldOfView {
-    float focusDistance = 1.0f; ///< along the axis
-    float apertureRadius = 0.001f;
-};
-struct Orthographic {
-    float size = 1.0f; ///< half the image height
-};
-
-/// Camera-to-world plus raster. The frame looks along +z of the transform with y up and the x axis negated
-/// (docs/scene-format.md, section 3).
-class Camera {
+class Camera : public CameraPlacement {
   public:
-    std::variant<Pinhole, ThinLens, Orthographic, Detectors> model;
-    Vec2i resolution{1000, 563};
-    Transform toWorld; ///< x axis already negated
+    Cameras::Variant model;
     ReconstructionFilter filter;
 
     /// Ray through raster position `pixel` + 0.5 + filter offset; weight 1. `uLens` is used by the thin lens and
@@ -41,9 +20,7 @@ class Camera {
     [[nodiscard]] Ray generateRay(const Vec2i& pixel, const Vec2f& uFilter, const Vec2f& uLens) const;
     /// The ray of generateRay that meets `point` after leaving the lens where `uLens` says; none behind the camera. The
     /// raster position may lie outside the image.
-    [[nodiscard]] std::optional<SensorSample> sampleSensor(const Vec3f& point, const Vec2f& uLens) const;
-    [[nodiscard]] Vec3f position() const { return toWorld.translation; }
-    [[nodiscard]] Vec3f forward() const { return toWorld.z.normalized(); }
+    [[nodiscard]] MaybeSensor sampleSensor(const Vec3f& point, const Vec2f& uLens) const;
     /// Raster position of a world point (pinhole and thin lens: through the lens centre; orthographic: along the axis);
     /// none behind the camera. May lie outside the image.
     [[nodiscard]] std::optional<Vec2f> project(const Vec3f& point) const;
@@ -57,7 +34,7 @@ class Camera {
     /// Every camera ray leaves the same point.
     [[nodiscard]] bool hasSinglePosition() const;
     /// None of other cameras.
-    [[nodiscard]] const Detectors* detectors() const;
+    [[nodiscard]] const Detectors* detectors() const { return std::get_if<Detectors>(&model); }
     /// position() says nothing about where a camera ray starts: all have the same direction, or there are detectors.
     [[nodiscard]] bool hasParallelRays() const;
 };

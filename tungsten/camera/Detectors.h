@@ -1,25 +1,12 @@
 #pragma once
 // Fibres, buckets and single pixels: each is a column of an image one pixel high.
 
-#include "tungsten/core/Types.h"
+#include "tungsten/camera/CameraModel.h"
 
-#include <optional>
 #include <string>
 #include <vector>
 
 namespace tungsten {
-
-/// A connection from a point to the sensor.
-struct SensorSample {
-    Vec3f direction; ///< from the point, unit
-    float distance;
-    /// Power scattered per steradian towards the sensor, times this, is what the point adds to the image per pixel of
-    /// area about `raster`: the density of raster positions per solid angle over distance^2 (orthographic: per area
-    /// across the rays), divided by the density of the place on the lens. Of detectors: cosine over distance^2, by
-    /// the etendue and the density of the place on which one. Visibility not included.
-    float weight;
-    Vec2f raster; ///< position in the image, in pixels; whole numbers are the centres of filters
-};
 
 /// A disc that accepts light within a cone about its normal.
 struct Detector {
@@ -45,12 +32,21 @@ struct Detector {
 };
 
 /// A camera's model: a pixel is the mean radiance that its detector accepts.
-struct Detectors {
+struct Detectors : CameraBase {
+    static constexpr const char* Type = "detectors";
     std::vector<Detector> row; ///< at least one
+
+    static void read(const CameraReader& fields, Camera& camera);
+    [[nodiscard]] Ray generateRay(const CameraPlacement&, const RasterSample& sample) const {
+        return row[size_t(sample.pixel.x)].sampleRay(sample.uLens, sample.uFilter);
+    }
+    /// A connection to any place of any detector: one of them, all alike, then a point of its disc.
+    [[nodiscard]] MaybeSensor sampleSensor(const CameraPlacement&, const Vec3f& point, const Vec2f& u) const;
+    [[nodiscard]] std::optional<Vec2f> project(const CameraPlacement&, const Vec3f&) const { return std::nullopt; }
 
     /// A connection to one of them: its disc, at a place drawn evenly. None where it does not accept what comes from
     /// there.
-    [[nodiscard]] std::optional<SensorSample> sample(size_t index, const Vec3f& point, const Vec2f& u) const;
+    [[nodiscard]] MaybeSensor sample(size_t index, const Vec3f& point, const Vec2f& u) const;
     /// Density per solid angle of connections to a detector that is drawn evenly, to a point at a distance along the
     /// unit `direction`.
     [[nodiscard]] float pdf(size_t index, const Vec3f& direction, float distance) const {

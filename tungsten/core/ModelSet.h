@@ -26,12 +26,17 @@ struct ModelSet {
         return sorted;
     }
     static bool has(const std::string& type) { return ((type == Models::Type) || ...); }
-    /// What `read.operator()<Model>()` makes of the model of that type, which the set has.
+    /// Calls `use.operator()<Model>()` for the model of that type, which the set has.
+    template <typename Use>
+    static void with(const std::string& type, const Use& use) {
+        ((type == Models::Type && (use.template operator()<Models>(), true)) || ...);
+    }
+    /// What the same returns.
     template <typename Read>
     static auto read(const std::string& type, const Read& read) {
         using First = std::variant_alternative_t<0, Variant>;
         std::optional<decltype(read.template operator()<First>())> result;
-        ((type == Models::Type && (result.emplace(read.template operator()<Models>()), true)) || ...);
+        with(type, [&]<typename Model> { result.emplace(read.template operator()<Model>()); });
         return std::move(*result);
     }
 };

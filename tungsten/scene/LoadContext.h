@@ -47,7 +47,6 @@ std::vector<std::string> primitiveTypes();
 /// `reader` is the camera block.
 void readCamera(LoadContext& context, const ObjectReader& root, const ObjectReader& reader);
 void describeCamera(const std::shared_ptr<Description>& description);
-std::vector<std::string> cameraTypes();
 /// `reader` is the renderer block.
 RendererSettings readRenderer(const ObjectReader& reader);
 /// `reader` is the film block.

@@ -254,7 +254,7 @@ constexpr Kind Kinds[] = {{"media", mediumTypes, describeMedium},
                           {"bsdfs", Bsdfs::types, describeBsdf},
                           {"textures", Textures::types, describeTexture},
                           {"primitives", primitiveTypes, describePrimitive},
-                          {"cameras", cameraTypes, describeCamera},
+                          {"cameras", Cameras::names, describeCamera},
                           {"filters", filterNames, describeFilter},
                           {"tone maps", toneMapNames, describeToneMap}};
 

@@ -44,7 +44,7 @@ Scene fogAtGate(const SplatCase& c) {
     if (c.frames > 0) scene.transport.gate = {false, false, 1.75, 0.25, c.frames};
     scene.transport.gate.start /= double(c.speed);
     scene.transport.gate.frameWidth /= double(c.speed);
-    if (c.orthographic) scene.camera.model = Orthographic{1.5f};
+    if (c.orthographic) scene.camera.model = Orthographic{{}, 1.5f};
     scene.camera.resolution = {37, 21};
     const Frame frame(Vec3f(0.4f, -0.3f, 0.8f).normalized());
     scene.camera.toWorld = {frame.s, frame.t, frame.n, Vec3f(1.0f, 2.0f, 3.0f)};
