@@ -130,11 +130,8 @@ std::vector<MediumSphere> spheresAboutMedia(const Scene& scene) {
                                         [](const BsdfPtr& bsdf) { return isIndexMatched(*bsdf) || refracts(*bsdf); });
         if (!passes || !scatters(primitive.inside.medium) || scatters(primitive.outside.medium)) continue;
         const Imath::Box3f box = boundsOf(primitive.shape);
-        const float radius =
-            std::visit(Overloaded{[](const Sphere& sphere) { return sphere.radius; },
-                                  [&](const OneOf<TriangleMesh, Disk> auto&) { return 0.5f * box.size().length(); }},
-                       primitive.shape);
-        spheres.push_back({box.center(), radius});
+        const auto* sphere = std::get_if<Sphere>(&primitive.shape);
+        spheres.push_back({box.center(), sphere ? sphere->radius : 0.5f * box.size().length()});
     }
     return spheres;
 }

@@ -5,10 +5,8 @@
 namespace tungsten::transport {
 
 const SurfaceInteraction* Vertex::surface() const {
-    return std::visit(
-        Overloaded{[](const SurfacePoint& at) { return &at.surface; },
-                   [](const OneOf<LightPoint, MediumPoint> auto&) -> const SurfaceInteraction* { return nullptr; }},
-        point_);
+    const auto* at = std::get_if<SurfacePoint>(&point_);
+    return at ? &at->surface : nullptr;
 }
 
 bool Vertex::isConnectible() const {

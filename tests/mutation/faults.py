@@ -682,15 +682,15 @@ FAULTS = [
      [("geometry_tests", "TransformMesh.NormalsTakeTheInverseSquareScaleOnTheLeft")]),  # normals of unevenly scaled meshes tilt
     ("tungsten/geometry/MeshOps.cpp", "const bool outward = (side > 0.0f) != mirrored;", "const bool outward = side > 0.0f;",
      [("geometry_tests", "Cube.OutwardNormalsAndUvByFollowingAxes")]),  # mirrored cubes are inside out
-    ("tungsten/geometry/Shape.cpp", "warp::squareToTriangle({chosen.remapped, u.y})", "warp::squareToTriangle({u.x, u.y})",
+    ("tungsten/geometry/MeshShape.cpp", "warp::squareToTriangle({chosen.remapped, u.y})", "warp::squareToTriangle({u.x, u.y})",
      [("geometry_tests", "AreaSampler.UniformOnAQuad")]),  # mesh lights: the first triangles shine from one corner, the last from the opposite edge
-    ("tungsten/geometry/Shape.cpp", "4.0f * Pi * sqr(sphere.radius)", "2.0f * Pi * sqr(sphere.radius)",
+    ("tungsten/geometry/AnalyticShape.h", "4.0f * Pi * sqr(radius)", "2.0f * Pi * sqr(radius)",
      [("geometry_tests", "Shapes.SphereRadiusIsTheLargestScale")]),  # sphere lights have half their area
-    ("tungsten/geometry/SceneGeometry.cpp", "values[triangle.v[1]] * b1 + values[triangle.v[2]] * b2;", "values[triangle.v[1]] * b2 + values[triangle.v[2]] * b1;",
+    ("tungsten/geometry/MeshShape.cpp", "values[triangle.v[1]] * b1 + values[triangle.v[2]] * b2;", "values[triangle.v[1]] * b2 + values[triangle.v[2]] * b1;",
      [("geometry_tests", "MeshHits.QuadFillsEveryField")]),  # textures and smooth normals are mirrored in every triangle
-    ("tungsten/geometry/SceneGeometry.cpp", "mesh.materials.empty() ? 0 : mesh.materials[hit.face];", "mesh.materials.empty() ? 0 : mesh.materials[0];",
+    ("tungsten/geometry/MeshShape.cpp", "materials.empty() ? 0 : materials[hit.face];", "materials.empty() ? 0 : materials[0];",
      [("geometry_tests", "MeshHits.TrianglesHaveMaterialsOfTheirOwn")]),  # meshes of several materials show the first one's
-    ("tungsten/geometry/AnalyticShape.cpp", "return isWithin(float(t1), tMin, tMax) ? float(t1) : -1.0f;", "return -1.0f;",
+    ("tungsten/geometry/AnalyticShape.cpp", "return isBetween(float(t1), tMin, tMax) ? float(t1) : -1.0f;", "return -1.0f;",
      [("geometry_tests", "SphereHits.MatchTheAnalyticRoots")]),  # spheres cannot be seen from inside
     ("tungsten/geometry/AnalyticShape.cpp", "offset.dot(offset) <= double(disk.radius) * double(disk.radius)", "offset.dot(offset) <= double(disk.radius)",
      [("geometry_tests", "SurfaceMargin.RaysAreClearOfTheSurfaceTheyStartAndEndOn")]),  # disks have the wrong size unless their radius is 1

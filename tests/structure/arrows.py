@@ -15,7 +15,7 @@ HOST = {
     "reader": {"core"},
     "image": {"core"},
     "film": {"core", "image"},
-    "geometry": {"core"},
+    "geometry": {"core", "reader"},
     "texture": {"core", "reader", "image"},
     "bsdf": {"core", "reader", "texture"},
     "medium": {"core", "reader"},

@@ -1,9 +1,62 @@
 #pragma once
-// Rays against spheres and disks, in double precision, and their parametrisations.
+// Spheres and disks, met by rays in double precision, and their parametrisations.
 
-#include "tungsten/geometry/SceneGeometry.h"
+#include "tungsten/core/Transform.h"
+#include "tungsten/geometry/ShapeModel.h"
 
 namespace tungsten {
+
+class ShapeReader;
+
+struct Sphere {
+    static constexpr const char* Type = "sphere";
+    Vec3f centre{0, 0, 0};
+    float radius = 1.0f;
+    Frame frame; ///< local axes: uv azimuth about n (local z)
+
+    static Sphere read(const ShapeReader& fields);
+    [[nodiscard]] bool isEmpty() const { return false; }
+    [[nodiscard]] size_t faceCount() const { return 1; }
+    [[nodiscard]] size_t triangleCount() const { return 0; }
+    [[nodiscard]] bool isWithin(float limit) const;
+    [[nodiscard]] bool isSheet() const { return false; }
+    [[nodiscard]] Imath::Box3f bounds() const;
+    [[nodiscard]] BoundingSphere boundingSphere() const { return {centre, radius}; }
+    [[nodiscard]] float area() const { return 4.0f * Pi * sqr(radius); }
+    [[nodiscard]] std::vector<float> faceAreas() const { return {}; }
+    [[nodiscard]] SurfaceSample samplePoint(const Distribution1D& areas, const Vec2f& u) const;
+    [[nodiscard]] FacePlane facePlane(uint32_t face, const Vec3f& position) const;
+    [[nodiscard]] Tangents tangents(const SurfaceHit& hit) const;
+    void complete(const Ray& ray, const Vec2f& barycentric, SurfaceHit& hit) const;
+};
+
+struct Disk {
+    static constexpr const char* Type = "disk";
+    Vec3f centre{0, 0, 0};
+    float radius = 1.0f;
+    Frame frame;               ///< n is the emitting, front side
+    float cosConeAngle = 0.0f; ///< emission is seen only inside the cone about n
+
+    static Disk read(const ShapeReader& fields);
+    [[nodiscard]] bool isEmpty() const { return false; }
+    [[nodiscard]] size_t faceCount() const { return 1; }
+    [[nodiscard]] size_t triangleCount() const { return 0; }
+    [[nodiscard]] bool isWithin(float limit) const;
+    [[nodiscard]] bool isSheet() const { return true; }
+    [[nodiscard]] Imath::Box3f bounds() const;
+    [[nodiscard]] BoundingSphere boundingSphere() const { return {centre, radius}; }
+    [[nodiscard]] float area() const { return Pi * sqr(radius); }
+    [[nodiscard]] std::vector<float> faceAreas() const { return {}; }
+    [[nodiscard]] SurfaceSample samplePoint(const Distribution1D& areas, const Vec2f& u) const;
+    [[nodiscard]] FacePlane facePlane(uint32_t face, const Vec3f& position) const;
+    [[nodiscard]] Tangents tangents(const SurfaceHit& hit) const;
+    void complete(const Ray& ray, const Vec2f& barycentric, SurfaceHit& hit) const;
+};
+
+/// Sphere of `transform`: radius = largest scale.
+Sphere makeSphere(const Transform& transform);
+/// Disk of `transform`: radius = max(scale x, scale z), normal = image of +y.
+Disk makeDisk(const Transform& transform, float coneAngleDegrees);
 
 /// The smallest t in [tMin, tMax] where the ray meets the shape, from either side; negative if there is none.
 /// t is rounded to float before it is compared.
@@ -14,16 +67,5 @@ float intersectShape(const Disk& disk, const Vec3f& origin, const Vec3f& directi
 /// to the coordinates' rounding.
 Vec3f pointOn(const Sphere& sphere, const Vec3d& offset);
 Vec3f pointOn(const Disk& disk, const Vec3d& offset);
-
-/// Everything of `hit` but shape, face and material, from its t.
-void completeHit(const Sphere& sphere, const Ray& ray, SurfaceHit& hit);
-void completeHit(const Disk& disk, const Ray& ray, SurfaceHit& hit);
-Tangents tangentsOf(const Sphere& sphere, const SurfaceHit& hit);
-Tangents tangentsOf(const Disk& disk, const SurfaceHit& hit);
-
-/// u = azimuth / 2 pi + 1/2, v = polar angle / pi of a unit vector in the sphere's frame.
-Vec2f sphereUv(const Vec3f& local);
-/// u = azimuth / 2 pi + 1/2, v = r / R of a point given in units of the radius.
-Vec2f diskUv(const Vec2f& local);
 
 } // namespace tungsten

@@ -176,34 +176,6 @@ float reachOf(const Sphere& sphere) {
            roundingError(Vec3f(std::abs(c.x), std::abs(c.y), std::abs(c.z)) + Vec3f(sphere.radius), Vec3f(1.0f));
 }
 
-/// Six times the volume that it encloses, if it encloses one.
-double enclosedVolume(const TriangleMesh& mesh) {
-    double volume = 0.0;
-    if (mesh.positions.empty()) return volume;
-    const Vec3d origin(mesh.positions[0]);
-    for (const Triangle& t : mesh.triangles) {
-        const Vec3d a = Vec3d(mesh.positions[t.v[0]]) - origin, b = Vec3d(mesh.positions[t.v[1]]) - origin,
-                    c = Vec3d(mesh.positions[t.v[2]]) - origin;
-        volume += a.dot(b.cross(c));
-    }
-    return std::abs(volume);
-}
-
-bool isSheet(const Shape& shape) {
-    return std::visit(Overloaded{[&](const TriangleMesh& mesh) {
-                                     const double size = double(boundsOf(shape).size().length());
-                                     return enclosedVolume(mesh) <= 1e-6 * size * size * size;
-                                 },
-                                 [](const Sphere&) { return false; }, [](const Disk&) { return true; }},
-                      shape);
-}
-
-size_t facesOf(const Shape& shape) {
-    return std::visit(Overloaded{[](const TriangleMesh& mesh) { return mesh.triangles.size(); },
-                                 [](const OneOf<Sphere, Disk> auto&) { return size_t(1); }},
-                      shape);
-}
-
 } // namespace
 
 CoincidentFaces::CoincidentFaces(const std::vector<const Shape*>& shapes, const std::vector<bool>& opaque,
@@ -212,9 +184,9 @@ CoincidentFaces::CoincidentFaces(const std::vector<const Shape*>& shapes, const 
     std::vector<Facet> facets;
     std::vector<std::pair<uint32_t, const Sphere*>> spheres;
     for (uint32_t i = 0; i < shapes.size(); ++i) {
-        faces_.push_back(facesOf(*shapes[i]));
+        faces_.push_back(std::visit([](const auto& m) { return m.faceCount(); }, *shapes[i]));
         std::visit(Overloaded{[&](const Sphere& sphere) { spheres.emplace_back(i, &sphere); },
-                              [&](const OneOf<TriangleMesh, Disk> auto& flat) { addFacets(flat, i, facets); }},
+                              [&](const auto& flat) { addFacets(flat, i, facets); }},
                    *shapes[i]);
     }
     const auto meet = [&](uint32_t i, uint32_t j) {
@@ -254,7 +226,8 @@ void CoincidentFaces::rankShapes(const std::vector<const Shape*>& shapes) {
     std::iota(bySize.begin(), bySize.end(), 0u);
     std::stable_sort(bySize.begin(), bySize.end(), [&](uint32_t a, uint32_t b) { return sizes[a] < sizes[b]; });
     ranks_.resize(shapes.size());
-    for (size_t i = 0; i < bySize.size(); ++i) ranks_[bySize[i]] = {int64_t(i) + 1, isSheet(*shapes[bySize[i]])};
+    for (size_t i = 0; i < bySize.size(); ++i)
+        ranks_[bySize[i]] = {int64_t(i) + 1, std::visit([](const auto& m) { return m.isSheet(); }, *shapes[bySize[i]])};
 }
 
 int64_t CoincidentFaces::order(uint32_t shape, bool along) const {

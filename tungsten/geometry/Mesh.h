@@ -3,7 +3,7 @@
 
 #include "tungsten/core/LoadWatch.h"
 #include "tungsten/core/Transform.h"
-#include "tungsten/core/Types.h"
+#include "tungsten/geometry/ShapeModel.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -33,6 +33,20 @@ struct TriangleMesh {
     [[nodiscard]] float faceArea(uint32_t triangle) const;
     /// At the barycentric weights `b1`, `b2` of the second and third corner.
     [[nodiscard]] Vec3f pointOn(uint32_t triangle, float b1, float b2) const;
+
+    [[nodiscard]] bool isEmpty() const { return triangles.empty(); }
+    [[nodiscard]] size_t faceCount() const { return triangles.size(); }
+    [[nodiscard]] size_t triangleCount() const { return triangles.size(); }
+    [[nodiscard]] bool isWithin(float limit) const;
+    [[nodiscard]] bool isSheet() const;
+    [[nodiscard]] Imath::Box3f bounds() const;
+    [[nodiscard]] BoundingSphere boundingSphere() const;
+    [[nodiscard]] float area() const;
+    [[nodiscard]] std::vector<float> faceAreas() const;
+    [[nodiscard]] SurfaceSample samplePoint(const Distribution1D& areas, const Vec2f& u) const;
+    [[nodiscard]] FacePlane facePlane(uint32_t face, const Vec3f& position) const;
+    [[nodiscard]] Tangents tangents(const SurfaceHit& hit) const;
+    void complete(const Ray& ray, const Vec2f& barycentric, SurfaceHit& hit) const;
 };
 
 /// Of length 1; (0, 1, 0) for what is zero or not finite.

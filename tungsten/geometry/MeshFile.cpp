@@ -1,6 +1,7 @@
 #include "tungsten/geometry/MeshFile.h"
 
 #include "tungsten/core/Errors.h"
+#include "tungsten/geometry/ShapeReader.h"
 
 #include <algorithm>
 #include <cctype>
@@ -60,6 +61,31 @@ TriangleMesh loadMesh(const std::filesystem::path& file, const std::optional<std
     if (extension == ".ply") return loadPly(file, watch);
     if (extension == ".gltf" || extension == ".glb") return loadGltf(file, within, watch);
     throw InputError(file.string(), "a mesh of type '" + extension + "'; accepted: .wo3, .obj, .ply, .gltf or .glb");
+}
+
+TriangleMesh MeshFile::read(const ShapeReader& fields) {
+    TriangleMesh mesh;
+    mesh.smooth = fields.flag("smooth", false, {"none", "shading normals are interpolated"});
+    const bool smooth = mesh.smooth;
+    const bool recompute =
+        fields.flag("recompute_normals", false, {"none", "of smooth meshes: from the triangles instead of the file"});
+    fields.accept({"backface_culling"});
+    const std::string file = fields.text("file", "", {"none", ".wo3, .obj, .ply, .gltf or .glb", "required"});
+    if (file.empty()) {
+        fields.problem("file", "a mesh needs a file (.wo3, .obj, .ply, .gltf or .glb)");
+        return mesh;
+    }
+    try {
+        mesh = loadMesh(fields.files.find(file), fields.files.allowedFolder(), fields.files.watch);
+    } catch (const InputError& error) {
+        fields.problem("file", error.what());
+        return {};
+    }
+    mesh.smooth = smooth;
+    if (smooth && recompute) recomputeNormals(mesh, fields.files.watch);
+    if (!smooth) std::vector<Vec3f>().swap(mesh.normals);
+    transformMesh(mesh, fields.placement);
+    return mesh;
 }
 
 } // namespace tungsten

@@ -3,8 +3,6 @@
 
 #include "tungsten/geometry/SceneGeometry.h"
 
-#include "tungsten/core/Overloaded.h"
-
 namespace tungsten {
 
 namespace {

@@ -1,8 +1,5 @@
 #include "tungsten/geometry/SceneGeometry.h"
 
-#include "tungsten/core/Overloaded.h"
-#include "tungsten/geometry/AnalyticShape.h"
-
 #include <atomic>
 #include <bit>
 #include <memory>
@@ -44,74 +41,6 @@ RTCGeometry makeTriangles(RTCDevice device, const TriangleMesh& mesh) {
     return geometry;
 }
 
-/// Tangents from the uvs; any frame about the normal where they are degenerate.
-Tangents tangentsOf(const TriangleMesh& mesh, const SurfaceHit& hit) {
-    const Triangle& triangle = mesh.triangles[hit.face];
-    if (!mesh.uvs.empty()) {
-        const Vec2f duv1 = mesh.uvs[triangle.v[1]] - mesh.uvs[triangle.v[0]];
-        const Vec2f duv2 = mesh.uvs[triangle.v[2]] - mesh.uvs[triangle.v[0]];
-        const Vec3f dp1 = mesh.positions[triangle.v[1]] - mesh.positions[triangle.v[0]];
-        const Vec3f dp2 = mesh.positions[triangle.v[2]] - mesh.positions[triangle.v[0]];
-        const float inverse = 1.0f / (duv1.x * duv2.y - duv1.y * duv2.x);
-        const Tangents tangents{(dp1 * duv2.y - dp2 * duv1.y) * inverse, (dp2 * duv1.x - dp1 * duv2.x) * inverse};
-        const float u2 = tangents.u.length2(), v2 = tangents.v.length2();
-        if (std::isfinite(u2) && std::isfinite(v2) && u2 > 0.0f && v2 > 0.0f) return tangents;
-    }
-    const Frame frame(hit.ng);
-    return {frame.s, frame.t};
-}
-
-/// The point where the ray meets the plane of a triangle, from a corner and the plane's normal of any length. On a vast
-/// triangle it is far better known from the ray than from the corners.
-Vec3f pointOnPlane(const Vec3f& corner, const Vec3d& n, const Ray& ray, float t) {
-    const Vec3d p0(corner), point = Vec3d(ray.origin) + Vec3d(ray.direction) * double(t);
-    return Vec3f(point - n * ((point - p0).dot(n) / n.dot(n)));
-}
-
-/// A point beside an edge, moved toward the triangle's middle until rounding no longer decides on which side it is of
-/// a wall that stands on the edge: a path that goes on from there would miss the wall. A few steps of coordinates.
-/// `area2`: twice the triangle's area.
-Vec3f clearOfEdges(const TriangleMesh& mesh, const Triangle& triangle, float area2, float b1, float b2,
-                   const Vec3f& point) {
-    constexpr float Steps = 8.0f * std::numeric_limits<float>::epsilon(), Third = 1.0f / 3.0f;
-    const Vec3f corner = mesh.positions[triangle.v[0]];
-    const Vec3f e1 = mesh.positions[triangle.v[1]] - corner, e2 = mesh.positions[triangle.v[2]] - corner;
-    const float clear = Steps * std::max({std::abs(point.x), std::abs(point.y), std::abs(point.z)});
-    // Distances to edges are weights times heights, and heights are twice the area over the edge's length.
-    const float b0 = 1.0f - b1 - b2, opposite0 = (e2 - e1).length2(), opposite1 = e2.length2(),
-                opposite2 = e1.length2();
-    const float nearest = std::max(std::min({b0, b1, b2}), 0.0f) * area2;
-    if (sqr(nearest) > sqr(clear) * std::max({opposite0, opposite1, opposite2})) return point;
-    const auto share = [&](float weight, float opposite) {
-        const float least = std::min(clear * std::sqrt(opposite) / area2, Third);
-        return least > weight ? (least - weight) / (Third - weight) : 0.0f;
-    };
-    const float toMiddle = std::max({share(b0, opposite0), share(b1, opposite1), share(b2, opposite2)});
-    const Vec3f middle = (e1 + e2) * Third, at = e1 * b1 + e2 * b2;
-    return toMiddle > 0.0f ? point + (middle - at) * std::min(toMiddle, 1.0f) : point;
-}
-
-/// `b1`, `b2` are the barycentric weights of the second and third corner.
-void completeHit(const TriangleMesh& mesh, const Ray& ray, float b1, float b2, SurfaceHit& hit) {
-    const Triangle& triangle = mesh.triangles[hit.face];
-    const float b0 = 1.0f - b1 - b2;
-    const auto blend = [&](const auto& values) {
-        return values[triangle.v[0]] * b0 + values[triangle.v[1]] * b1 + values[triangle.v[2]] * b2;
-    };
-    hit.material = mesh.materials.empty() ? 0 : mesh.materials[hit.face];
-    const Vec3d normal = mesh.scaledNormal(hit.face);
-    const Vec3f onPlane = pointOnPlane(mesh.positions[triangle.v[0]], normal, ray, hit.t);
-    hit.position = clearOfEdges(mesh, triangle, float(std::sqrt(normal.dot(normal))), b1, b2, onPlane);
-    hit.ng = unitOrUp(normal);
-    hit.error = roundingError(mesh, hit.face, b1, b2, hit.position, hit.ng);
-    hit.ns = hit.ng;
-    hit.uv = mesh.uvs.empty() ? Vec2f(0.0f) : blend(mesh.uvs);
-    if (!mesh.smooth || mesh.normals.empty()) return;
-    const Vec3f shading = blend(mesh.normals);
-    const float length = shading.length();
-    if (length > 0.0f && std::isfinite(length)) hit.ns = shading / length;
-}
-
 /// The open interval (tMin, tMax) of a ray that canBeTraced() as the closest closed one, of neighbouring floats; Embree
 /// needs tnear >= 0, and denormals may be flushed.
 RTCRay embreeRay(const Ray& ray) {
@@ -128,39 +57,6 @@ RTCRay embreeRay(const Ray& ray) {
     out.mask = ~0u;
     return out;
 }
-
-/// The plane of a face next to a point: its own normal, unit, how far the point is along it, and how far off a ray test
-/// may put the face.
-struct FacePlane {
-    Vec3f normal;
-    float height, error;
-
-    static FacePlane of(const Shape& shape, uint32_t face, const Vec3f& position) {
-        return std::visit(
-            Overloaded{
-                [&](const TriangleMesh& mesh) {
-                    const Vec3d n = mesh.scaledNormal(face),
-                                offset = Vec3d(position) - Vec3d(mesh.positions[mesh.triangles[face].v[0]]);
-                    const double length = std::sqrt(n.dot(n));
-                    const Vec3f normal = unitOrUp(n);
-                    return FacePlane{normal, length > 0.0 ? float(offset.dot(n) / length) : Infinity,
-                                     roundingError(mesh, face, 1.0f, 1.0f, position, normal)};
-                },
-                [&](const Sphere& sphere) {
-                    const Vec3d offset = Vec3d(position) - Vec3d(sphere.centre);
-                    const double length = std::sqrt(offset.dot(offset));
-                    const Vec3f normal = length > 0.0 ? Vec3f(offset / length) : sphere.frame.n;
-                    return FacePlane{normal, float(length - double(sphere.radius)), roundingError(position, normal)};
-                },
-                [&](const Disk& disk) {
-                    const Vec3d n(disk.frame.n);
-                    return FacePlane{disk.frame.n,
-                                     float((Vec3d(position) - Vec3d(disk.centre)).dot(n) / std::sqrt(n.dot(n))),
-                                     roundingError(position, disk.frame.n)};
-                }},
-            shape);
-    }
-};
 
 // --- faces at one place
 
@@ -186,7 +82,7 @@ struct CoincidentQuery {
         return std::abs(plane.height) <= reach && plane.normal.cross(normal).length2() <= CoincidentFaces::Parallel;
     }
     void consider(const FaceIndex& at, const Vec2f& uv) {
-        const FacePlane plane = FacePlane::of(*(*shapes)[at.shape], at.face, position);
+        const FacePlane plane = facePlane(*(*shapes)[at.shape], at.face, position);
         if (!isHere(plane)) return;
         const int64_t order = side * faces->order(at.shape, plane.normal.dot(normal) > 0.0f);
         if (order <= after || order >= bestOrder) return;
@@ -279,23 +175,14 @@ RTCGeometry makeAnalytic(RTCDevice device, const Analytic& shape) {
     return geometry;
 }
 
-/// Null for a shape that no ray meets.
-RTCGeometry makeGeometry(RTCDevice device, const Shape& shape) {
-    return std::visit(Overloaded{[&](const TriangleMesh& mesh) {
-                                     return mesh.triangles.empty() || mesh.positions.empty()
-                                                ? nullptr
-                                                : makeTriangles(device, mesh);
-                                 },
-                                 [&](const OneOf<Sphere, Disk> auto& round) {
-                                     return round.radius > 0.0f ? makeAnalytic(device, round) : nullptr;
-                                 }},
-                      shape);
-}
+// Null for a shape that no ray meets.
 
-size_t trianglesOf(const Shape& shape) {
-    return std::visit(Overloaded{[](const TriangleMesh& mesh) { return mesh.triangles.size(); },
-                                 [](const OneOf<Sphere, Disk> auto&) { return size_t(0); }},
-                      shape);
+RTCGeometry makeGeometry(RTCDevice device, const TriangleMesh& mesh) {
+    return mesh.triangles.empty() || mesh.positions.empty() ? nullptr : makeTriangles(device, mesh);
+}
+template <typename Analytic>
+RTCGeometry makeGeometry(RTCDevice device, const Analytic& shape) {
+    return shape.boundingSphere().radius > 0.0f ? makeAnalytic(device, shape) : nullptr;
 }
 
 /// Asked by Embree's builders, in threads of their own. That the last of them has answered before a build ends is
@@ -350,9 +237,10 @@ SceneGeometry::SceneGeometry(const std::vector<const Shape*>& shapes, const std:
 void SceneGeometry::attachShapes(const LoadWatch& watch) {
     for (size_t i = 0; i < shapes_.size(); ++i) {
         watch.poll();
-        const RTCGeometry geometry = makeGeometry(device_.get(), *shapes_[i]);
+        const RTCGeometry geometry =
+            std::visit([&](const auto& m) { return makeGeometry(device_.get(), m); }, *shapes_[i]);
         if (!geometry) continue;
-        triangleCount_ += trianglesOf(*shapes_[i]);
+        triangleCount_ += std::visit([](const auto& m) { return m.triangleCount(); }, *shapes_[i]);
         rtcCommitGeometry(geometry);
         rtcAttachGeometryByID(scene_.get(), geometry, unsigned(i));
         rtcReleaseGeometry(geometry);
@@ -360,13 +248,11 @@ void SceneGeometry::attachShapes(const LoadWatch& watch) {
 }
 
 void SceneGeometry::complete(const Ray& ray, const Vec2f& barycentric, SurfaceHit& hit) const {
-    std::visit(Overloaded{[&](const TriangleMesh& mesh) { completeHit(mesh, ray, barycentric.x, barycentric.y, hit); },
-                          [&](const OneOf<Sphere, Disk> auto& round) { completeHit(round, ray, hit); }},
-               *shapes_[hit.shape]);
+    std::visit([&](const auto& m) { m.complete(ray, barycentric, hit); }, *shapes_[hit.shape]);
 }
 
 Tangents SceneGeometry::tangents(const SurfaceHit& hit) const {
-    return std::visit([&](const auto& shape) { return tangentsOf(shape, hit); }, *shapes_[hit.shape]);
+    return std::visit([&](const auto& m) { return m.tangents(hit); }, *shapes_[hit.shape]);
 }
 
 std::optional<SurfaceHit> SceneGeometry::intersect(const Ray& ray) const {
@@ -393,7 +279,7 @@ void SceneGeometry::takeFirst(const Ray& ray, SurfaceHit& hit) const {
                           &coincident_, hit.position,
                           hit.ng,       coincident_.reach(hit.index()),
                           side,         std::numeric_limits<int64_t>::min()};
-    query.ask(scene_.get(), FacePlane::of(*shapes_[hit.shape], hit.face, hit.position).error);
+    query.ask(scene_.get(), facePlane(*shapes_[hit.shape], hit.face, hit.position).error);
     if (!query.best.isSet() || query.bestOrder >= side * coincident_.order(hit.shape, true)) return;
     hit.shape = query.best.shape;
     hit.face = query.best.face;
@@ -402,7 +288,7 @@ void SceneGeometry::takeFirst(const Ray& ray, SurfaceHit& hit) const {
 
 std::optional<SurfaceHit> SceneGeometry::intersectFromCoincident(Ray ray) const {
     const FaceIndex left = std::exchange(ray.leaves, FaceIndex{});
-    const FacePlane plane = FacePlane::of(*shapes_[left.shape], left.face, ray.origin);
+    const FacePlane plane = facePlane(*shapes_[left.shape], left.face, ray.origin);
     const int64_t side = ray.direction.dot(plane.normal) > 0.0f ? 1 : -1;
     CoincidentQuery query{{},           &shapes_,
                           &coincident_, ray.origin - plane.normal * plane.height,

@@ -1,62 +1,12 @@
 #include "tungsten/scene/LoadContext.h"
 
-#include "tungsten/core/Overloaded.h"
+#include "tungsten/geometry/ShapeReader.h"
 #include "tungsten/reader/FormatTypes.h"
 #include "tungsten/scene/LoadEmitters.h"
-
-#include <map>
 
 namespace tungsten {
 
 namespace {
-
-using SurfaceReader = Shape (*)(LoadContext&, const ObjectReader&, const Transform&);
-
-Shape readMesh(LoadContext& context, const ObjectReader& reader, const Transform& transform) {
-    TriangleMesh mesh;
-    mesh.smooth = reader.flag("smooth", false, {"none", "shading normals are interpolated"});
-    const bool smooth = mesh.smooth;
-    const bool recompute =
-        reader.flag("recompute_normals", false, {"none", "of smooth meshes: from the triangles instead of the file"});
-    reader.accept({"backface_culling"});
-    const std::string file = reader.text("file", "", {"none", ".wo3, .obj, .ply, .gltf or .glb", "required"});
-    if (file.empty()) {
-        reader.problem("file", "a mesh needs a file (.wo3, .obj, .ply, .gltf or .glb)");
-        return mesh;
-    }
-    try {
-        mesh = loadMesh(context.files.find(file), context.files.allowedFolder(), context.files.watch);
-    } catch (const InputError& error) {
-        reader.problem("file", error.what());
-        return TriangleMesh{};
-    }
-    mesh.smooth = smooth;
-    if (smooth && recompute) recomputeNormals(mesh, context.files.watch);
-    if (!smooth) std::vector<Vec3f>().swap(mesh.normals);
-    transformMesh(mesh, transform);
-    return mesh;
-}
-
-Shape readQuad(LoadContext&, const ObjectReader&, const Transform& transform) {
-    return makeQuad(transform);
-}
-Shape readCube(LoadContext&, const ObjectReader&, const Transform& transform) {
-    return makeCube(transform);
-}
-Shape readSphere(LoadContext&, const ObjectReader&, const Transform& transform) {
-    return makeSphere(transform);
-}
-Shape readDisk(LoadContext&, const ObjectReader& reader, const Transform& transform) {
-    return makeDisk(transform,
-                    float(reader.number("cone_angle", 90.0, {"degrees", "it emits within that angle of its normal"},
-                                        {0.0, 180.0})));
-}
-
-const std::map<std::string, SurfaceReader>& surfaceReaders() {
-    static const std::map<std::string, SurfaceReader> readers{
-        {"mesh", readMesh}, {"quad", readQuad}, {"cube", readCube}, {"sphere", readSphere}, {"disk", readDisk}};
-    return readers;
-}
 
 Region regionOn(const LoadContext& context, int medium, double speed) {
     if (medium >= 0) return {medium, context.scene.media[size_t(medium)].speedOfLight};
@@ -83,41 +33,21 @@ void readRegions(LoadContext& context, const ObjectReader& reader, Primitive& pr
 /// Areas of what lies further out are no numbers, and Embree leaves it out without a word.
 constexpr float LargestCoordinate = 2e9f;
 
-bool isNear(const Vec3f& p) {
-    return std::abs(p.x) <= LargestCoordinate && std::abs(p.y) <= LargestCoordinate &&
-           std::abs(p.z) <= LargestCoordinate;
-}
-
-bool isPlaced(const Shape& shape) {
-    return std::visit(Overloaded{[](const TriangleMesh& mesh) {
-                                     return std::all_of(mesh.positions.begin(), mesh.positions.end(), isNear);
-                                 },
-                                 [](const OneOf<Sphere, Disk> auto& round) {
-                                     return isNear(round.centre) && round.radius <= LargestCoordinate;
-                                 }},
-                      shape);
-}
-
-bool isUsable(const Shape& shape) {
-    return std::visit(Overloaded{[](const TriangleMesh& mesh) { return !mesh.triangles.empty(); },
-                                 [](const OneOf<Sphere, Disk> auto&) { return true; }},
-                      shape);
-}
-
-void readSurface(LoadContext& context, const ObjectReader& reader, SurfaceReader readShape) {
+void readSurface(LoadContext& context, const ObjectReader& reader, const std::string& type) {
     const Transform transform = reader.transform("transform", PlacementMeaning);
     Primitive primitive;
     primitive.name = reader.text("name", "", NameMeaning);
     primitive.path = reader.path();
-    primitive.shape = readShape(context, reader, transform);
-    if (!isPlaced(primitive.shape))
+    const ShapeReader fields(reader, context.files, transform);
+    primitive.shape = ShapeSources::read(type, [&]<typename Model> { return Shape(Model::read(fields)); });
+    if (!std::visit([](const auto& m) { return m.isWithin(LargestCoordinate); }, primitive.shape))
         reader.problem("transform", "the surface reaches beyond coordinates of " + brief(double(LargestCoordinate)));
     primitive.bsdfs = context.fieldsOf(reader).bsdfs(
         "bsdf", {"none", "how it scatters light; an array goes by the mesh's materials", "white Lambert"});
     readRegions(context, reader, primitive);
     const std::optional<Texture> radiance = AreaEmitter::readRadiance(context.fieldsOf(reader), primitive.shape);
     EmissionTimes times = readEmissionTimes(reader);
-    if (!isUsable(primitive.shape)) {
+    if (std::visit([](const auto& m) { return m.isEmpty(); }, primitive.shape)) {
         if (context.scene.geometry == nullptr) reader.warn("file", "the mesh has no triangles: left out");
         return;
     }
@@ -146,9 +76,8 @@ constexpr Meaning TypeMeaning{"none", "which shape or light source", "required"}
 void readPrimitive(LoadContext& context, const ObjectReader& reader) {
     if (reader.describes()) reader.declare("type", listOf(primitiveTypes()), "none", TypeMeaning);
     const std::string type = reader.text("type", "", TypeMeaning);
-    const auto surface = surfaceReaders().find(type);
-    if (surface != surfaceReaders().end()) {
-        readSurface(context, reader, surface->second);
+    if (ShapeSources::has(type)) {
+        readSurface(context, reader, type);
     } else if (!readLightSource(context, reader, type)) {
         reader.problem("type", refusal(type, "'" + type + "'", primitiveTypes(), unsupportedPrimitives()));
         return;
@@ -160,7 +89,8 @@ void readPrimitive(LoadContext& context, const ObjectReader& reader) {
 
 std::vector<std::string> primitiveTypes() {
     std::vector<std::string> types = LightSources::types();
-    for (const auto& [type, reader] : surfaceReaders()) types.push_back(type);
+    const std::vector<std::string> shapes = ShapeSources::types();
+    types.insert(types.end(), shapes.begin(), shapes.end());
     return types;
 }
 

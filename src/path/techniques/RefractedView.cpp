@@ -66,9 +66,7 @@ constexpr float LeastRefractedCosine = 0.2f;
 bool RefractedEmitter::isOne(const Emitter& emitter) {
     const AreaEmitter* area = emitter.surface();
     if (!area || !(area->areaSampler->area() > 0.0f)) return false;
-    return std::visit(Overloaded{[](const TriangleMesh& mesh) { return mesh.triangles.size() <= MostLampTriangles; },
-                                 [](const OneOf<Sphere, Disk> auto&) { return true; }},
-                      *area->shape);
+    return std::visit([](const auto& m) { return m.faceCount() <= MostLampTriangles; }, *area->shape);
 }
 
 /// Moeller and Trumbore 1997.
