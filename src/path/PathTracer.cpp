@@ -22,8 +22,7 @@ namespace {
 constexpr size_t TileSide = 8;
 constexpr double PilotFrame = 10.0;       ///< nanoseconds for each frame of a path in that pilot
 constexpr uint32_t MostSampleRounds = 64; ///< pairs of a block of pixels in a pilot of samples
-/// Of the cost of a pilot of shares: those of samples and of windows, and where one of these is to be sure.
-constexpr double PilotPart = 0.35, LongPilotPart = 4.0 * PilotPart;
+constexpr double PilotPart = 0.35;        ///< of the cost of a pilot of shares: those of samples and of windows
 constexpr uint32_t SamplesPerPoll = 16;
 constexpr double LightPathsPart = 0.1; ///< of a pass
 /// Multiples of it, modulo 1, fill the unit interval evenly from any place on.
@@ -306,7 +305,7 @@ void PathTracer::allocateSamples(const ProgressToken& watch, Statistics& statist
     if (!plan_.allocation.on) return;
     if (!windows && (guides() || plain.pairs() == 0.0)) {
         allocation_ = SampleAllocation(scene_->camera.resolution);
-        measureSamples(allocation_, PilotPart, watch, statistics);
+        measureSamples(allocation_, watch, statistics);
     } else {
         allocation_ = std::move(windows ? windowed : plain);
     }
@@ -320,32 +319,27 @@ bool PathTracer::takesWindows(SampleAllocation& plain, SampleAllocation& windowe
         return plan_.allocation.on ? allocation.varianceTimesCost() : allocation.varianceTimesCostOfEven();
     };
     const StrategyBalance chosen = std::exchange(balance_, {1.0f, 0.0f});
-    for (const double part : {PilotPart, LongPilotPart}) {
-        measureSamples(plain, part, watch, statistics);
-        std::swap(windows, weightWindows_);
-        measureSamples(windowed, part, watch, statistics);
-        // Few bright paths have most of a variance: windows must be better by two standard errors.
-        const double ratio = worth(windowed) * gainOfBalance_ / worth(plain),
-                     doubt = 2.0 * std::hypot(plain.relativeError(), windowed.relativeError());
-        if (ratio * (1.0 + doubt) < 1.0) return true;
-        std::swap(windows, weightWindows_);
-        if (!(ratio < tuning::WorthSharing)) break;
-    }
+    measureSamples(plain, watch, statistics);
+    weightWindows_ = std::move(windows);
+    measureSamples(windowed, watch, statistics);
+    // Few bright paths have most of a variance: windows must be better by two standard errors.
+    const double ratio = worth(windowed) * gainOfBalance_ / worth(plain);
+    if (ratio * (1.0 + 2.0 * std::hypot(plain.relativeError(), windowed.relativeError())) < 1.0) return true;
+    weightWindows_ = {};
     balance_ = chosen;
     return false;
 }
 
-void PathTracer::measureSamples(SampleAllocation& allocation, double part, const ProgressToken& watch,
+void PathTracer::measureSamples(SampleAllocation& allocation, const ProgressToken& watch,
                                 Statistics& statistics) const {
     const StageTimer timer(statistics, "pilot of samples");
     constexpr uint64_t Key = transport::PilotKey;
     const int frames = sensor_.gate.frames;
     Film probe(1, 1, frames, {.moments = false});
     std::vector<Rgb> before(static_cast<size_t>(frames));
-    const auto first = uint32_t(2.0 * allocation.pairs());
-    Sampler places(Key, RandomStream::Pilot, 1, first);
+    Sampler places(Key, RandomStream::Pilot, 1, 0);
     double cost = 0.0;
-    uint32_t traced = first;
+    uint32_t traced = 0;
     const auto tracePair = [&](const auto& trace, size_t block) {
         const float u = places.next1D(), v = places.next1D();
         const Vec2i pixel = allocation.pixelOf(block, u, v);
@@ -372,10 +366,10 @@ void PathTracer::measureSamples(SampleAllocation& allocation, double part, const
         allocation.tell(block, variance, own);
         cost += own + 2.0 * PilotFrame * double(frames);
     };
-    const auto rounds = uint32_t(double(MostSampleRounds) * part / PilotPart);
-    watch.stage("pilot of samples", rounds);
+    watch.stage("pilot of samples", MostSampleRounds);
     withPaths(watch, [&](const auto& trace) {
-        for (uint32_t round = 0; round < rounds && cost < part * double(transport::tuning::MostPilotCost); ++round) {
+        for (uint32_t round = 0;
+             round < MostSampleRounds && cost < PilotPart * double(transport::tuning::MostPilotCost); ++round) {
             for (size_t block = 0; block < allocation.blocks(); ++block) {
                 watch.advanceWithin(SamplesPerPoll, block + 1);
                 tracePair(trace, block);
@@ -384,7 +378,7 @@ void PathTracer::measureSamples(SampleAllocation& allocation, double part, const
         }
     });
     allocation.choose();
-    statistics.add("pilot samples", traced - first);
+    statistics.add("pilot samples", traced);
 }
 
 double PathTracer::cost(const PathCounters& counters, const tuning::Costs::Walk& each) const {

@@ -33,9 +33,8 @@ class PathTracer : public Integrator {
     [[nodiscard]] bool guides() const { return plan_.guidance.on && balance_.guided > 0.0f; }
     /// Points that the paths of the pass aim at.
     [[nodiscard]] const TargetChoice& targets() const { return guides() ? *targets_ : *sources_; }
-    /// Measures how much pixels vary, by further pairs of paths as they are now.
-    void measureSamples(SampleAllocation& allocation, double part, const ProgressToken& watch,
-                        Statistics& statistics) const;
+    /// Measures how much pixels vary, by pairs of paths as they are now.
+    void measureSamples(SampleAllocation& allocation, const ProgressToken& watch, Statistics& statistics) const;
     /// Shares samples out, and takes plain paths with weight windows where they are worth more than what was chosen.
     void allocateSamples(const ProgressToken& watch, Statistics& statistics);
     /// True if plain paths with windows, which it leaves in place, are surely better than what was chosen; measures

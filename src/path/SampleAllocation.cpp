@@ -107,8 +107,6 @@ void SampleAllocation::choose() {
         }
         return evenVariance > 0.0 ? variance * cost / (evenVariance * evenCost) : 1.0;
     };
-    densities_.clear();
-    part_ = 1.0;
     double least = tuning::WorthSharing;
     // Few pairs follow what an image has, many what noise leaves.
     for (const double pairs : {64.0, 256.0, 1024.0}) {

@@ -35,8 +35,9 @@ inline std::string contentOf(const std::filesystem::path& file) {
 
 class Command {
   public:
-    explicit Command(std::vector<std::string> arguments) {
-        arguments.insert(arguments.begin(), (binaryFolder() / "tungsten").string());
+    /// `folder`: of the program.
+    explicit Command(std::vector<std::string> arguments, const std::filesystem::path& folder = binaryFolder()) {
+        arguments.insert(arguments.begin(), (folder / "tungsten").string());
         std::vector<char*> argv;
         for (std::string& argument : arguments) argv.push_back(argument.data());
         argv.push_back(nullptr);

@@ -295,5 +295,14 @@ TEST(Command, ABadSceneDoesNotKeepTheNextFromRendering) {
     EXPECT_TRUE(fs::exists(good.path().parent_path() / "box.png"));
 }
 
+TEST(Command, DescribesWhatIsThereWithoutPlugins) {
+    const test::TemporaryFolder folder;
+    for (const char* file : {"tungsten", "libtungsten.so"})
+        fs::copy_file(test::binaryFolder() / file, folder.path() / file);
+    const CommandResult described = test::Command({"--describe", "--markdown"}, folder.path()).wait();
+    EXPECT_EQ(described.exitCode, 0) << described.all();
+    EXPECT_NE(described.out.find("### renderer"), std::string::npos);
+}
+
 } // namespace
 } // namespace tungsten

@@ -148,6 +148,7 @@ void printMarkdown(const std::vector<DescribedKind>& kinds, std::ostream& out) {
            "Lengths are in the scene's unit; in a unit of time light travels `speed_of_light` of them.\n"
            "Colours are linear; where a number stands for three, it counts for each.\n";
     for (const DescribedKind& kind : kinds) {
+        if (kind.types.empty()) continue; // integrators, where no plugin is found
         out << "\n## " << title(kind.kind) << '\n';
         if (kind.kind == "blocks")
             printBlocks(kind, out);

@@ -30,10 +30,10 @@ def picture(bench, ratios):
 
 def run(bench: Bench):
     rows, ratios, auto = [], {}, {}
-    seeds = bench.short(4, 2)
+    seeds = bench.short(3, 2)
     for name in bench.short(scenes(), scenes()[:1]):
         place = Scene.own(name, bench.short(24, 12))
-        truth = Truth(*bench.reference(place, bench.short(60, 2)))
+        truth = Truth(*bench.reference(place, bench.short(40, 2)))
         cells = {f"{preset} {kind}": (place, method(f"{preset} {kind}")) for kind in PRIMITIVES for preset in ("plain", "best")}
         cells["best auto"] = (place, [*method("best beams"), AUTO])
         found = {key: parts(renders, truth) for key, renders in bench.interleaved(cells, seeds, cpu=bench.short(4, 0.3)).items()}
@@ -47,7 +47,7 @@ def run(bench: Bench):
     mean = ["geometric mean", *(f"{geometric_mean([found[kind] for found in ratios.values()]):.3g}" for kind in PRIMITIVES),
             f"{geometric_mean(list(auto.values())):.3g}"]
     bench.write(TITLE, f"MSE × CPU seconds of best over plain, {seeds} seeds of 4 s each: below 1 best is the cheaper. *auto*: "
-                "`volume_photon_type: auto` over the better of best points and best beams. References are best paths of 60 s.",
+                "`volume_photon_type: auto` over the better of best points and best beams. References are best paths of 40 s.",
                 "![ratios](unseen.svg)", table(["scene", *PRIMITIVES, "auto"], [*body, mean]),
                 "Of each method, with means over the reference's and standard errors over seeds: "
                 + bench.keep("unseen", ["scene", "method", "MSE x CPU s", "its error", "mean", "its error"], rows) + ".")
