@@ -23,7 +23,7 @@ from darts_bench import measures  # noqa: E402
 from darts_bench.images import read_exr, read_pfm  # noqa: E402
 from darts_bench.run import call  # noqa: E402
 from darts_bench.study_file import load_study  # noqa: E402
-from study_command import study as study_command  # noqa: E402
+from study_command import started, study as study_command  # noqa: E402
 
 SCENE = PROJECT / "data/scenes/cornell-fog/scene.json"
 SIZE = 32
@@ -204,9 +204,7 @@ class TinyStudy(unittest.TestCase):
 
     def test_interrupted_runs_leave_no_result(self):
         work = self.folder / "interrupted"
-        process = subprocess.Popen([sys.executable, BENCH, "study", self.folder / "tiny.json", "--seconds", "600", "--methods", "points",
-                                    "--work", work, "--tungsten", TUNGSTEN],
-                                   stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+        process = started(self.folder / "tiny.json", "--seconds", "600", "--methods", "points", "--work", work, "--tungsten", TUNGSTEN)
         while not list(work.glob("runs/fog/points/*.partial")) and process.poll() is None:
             time.sleep(0.05)
         process.send_signal(signal.SIGINT)

@@ -16,7 +16,7 @@ from pathlib import Path
 PROJECT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(PROJECT / "tests/support"))
 
-from study_command import study  # noqa: E402
+from study_command import started, study  # noqa: E402
 
 TUNGSTEN = os.environ.get("TUNGSTEN", str(PROJECT / "build/bin/tungsten"))
 SCENE = PROJECT / "data/scenes/cornell-fog/scene.json"
@@ -89,10 +89,7 @@ class Submit(unittest.TestCase):
         self.assertTrue((self.work / "report.md").exists())
 
     def test_interrupted_workers_leave_no_result(self):
-        def listen():  # what a shell starts in the background ignores interrupts
-            signal.signal(signal.SIGINT, signal.SIG_DFL)
-        process = subprocess.Popen([sys.executable, PROJECT / "benchmarks/bench.py", "study", self.folder / "tiny.json", "--seconds", "600", "--workers", "2",
-                                    "--work", self.work, "--tungsten", TUNGSTEN], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, preexec_fn=listen)
+        process = started(self.folder / "tiny.json", "--seconds", "600", "--workers", "2", "--work", self.work, "--tungsten", TUNGSTEN)
         while len(list(self.work.glob("runs/*/*/*.partial"))) < 2 and process.poll() is None:
             time.sleep(0.05)
         process.send_signal(signal.SIGINT)

@@ -1,13 +1,15 @@
-"""The study's command (benchmarks/bench.py study) without a process of its own: loading numpy and matplotlib takes longer than what
-most calls do."""
+"""The study's command (benchmarks/bench.py study), mostly without a process of its own: loading numpy and matplotlib takes longer than
+what most calls do."""
 
 import contextlib
 import io
+import signal
 import subprocess
 import sys
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "benchmarks"))
+BENCHMARKS = Path(__file__).resolve().parents[2] / "benchmarks"
+sys.path.insert(0, str(BENCHMARKS))
 
 from bench import main  # noqa: E402
 
@@ -22,3 +24,9 @@ def study(*arguments):
         except SystemExit as stop:
             code = stop.code
     return subprocess.CompletedProcess(arguments, code, out.getvalue(), error.getvalue())
+
+
+def started(*arguments):
+    """A process that can be interrupted, even if a shell has started the test in the background, where interrupts are ignored."""
+    return subprocess.Popen([sys.executable, BENCHMARKS / "bench.py", "study", *arguments], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
+                            text=True, preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL))
