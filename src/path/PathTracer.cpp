@@ -259,9 +259,10 @@ void PathTracer::withGuidedPaths(const ProgressToken& watch, const Use& use) con
 
 WeightWindows PathTracer::learnWindows(const ProgressToken& watch, Statistics& statistics) const {
     const StageTimer timer(statistics, "pilot of weight windows");
-    constexpr uint64_t Key = transport::PilotKey;
+    // Not those of the pilot of samples, which judges the windows.
+    constexpr uint64_t Key = transport::PilotKey + 1;
     const Vec2i size = scene_->camera.resolution;
-    WeightWindows windows(*scene_, sensor_.gate.steadyState ? double(Infinity) : sensor_.arrivals.end());
+    WeightWindows windows;
     PathContext context = plainContext(watch);
     StrategyCounters counters;
     Sampler places(Key, RandomStream::Pilot, 2, 0);
@@ -269,9 +270,9 @@ WeightWindows PathTracer::learnWindows(const ProgressToken& watch, Statistics& s
     const auto tracePair = [&](const auto& trace) {
         const Vec2i pixel{std::min(int(places.next1D() * float(size.x)), size.x - 1),
                           std::min(int(places.next1D() * float(size.y)), size.y - 1)};
-        std::array<WeightWindows::Record, 2> pair{WeightWindows::Record{windows}, WeightWindows::Record{windows}};
+        std::array<WeightWindows::Record, 2> pair;
         for (WeightWindows::Record& record : pair) {
-            Sampler sampler(Key, RandomStream::Camera, traced++, 1);
+            Sampler sampler(Key, RandomStream::Camera, traced++, 0);
             const Vec2f uFilter = sampler.next2D(), uLens = sampler.next2D();
             const Ray ray = scene_->camera.generateRay(pixel, uFilter, uLens);
             PixelAccumulator sink(record.pilot, sensor_, counters.plain);
@@ -465,7 +466,9 @@ void PathTracer::chooseShare(const ProgressToken& watch, Statistics& statistics)
     };
     const double time = asked ? double(*asked) : pilot.choose(costs);
     balance_ = costs.ofTime(time);
-    gainOfBalance_ = time < 1.0 ? score(1.0) / score(time) : 1.0;
+    // Where too little was found for a choice, both stay.
+    const bool enough = pilot.effective(Strategy::Alone) >= transport::tuning::LeastEffective;
+    gainOfBalance_ = time == 1.0 ? 1.0 : enough ? score(1.0) / score(time) : double(Infinity);
     statistics.add(counter::PilotPaths, traced);
     statistics.add("plain camera paths, in thousandths", uint64_t(std::lround(1000.0 * double(balance_.plain))));
 }

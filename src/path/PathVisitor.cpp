@@ -71,6 +71,7 @@ bool PathVisitor<TimeResolved, Beside>::vertex(PathState& path, auto& steps, con
         sealed_ = SealedVertex{at.position, at.before, path.time, path.region, path.channels};
         aimThroughWall(path, steps, *at.medium);
     }
+    if (record_) record_->add(path, at);
     return true;
 }
 
@@ -217,8 +218,8 @@ void PathVisitor<TimeResolved, Beside>::aimThroughWall(const PathState& path, co
     const float phase = medium.phase.eval(sealed_->before, drawn->direction);
     const float share = transport::balance(density, phase * exits);
     aimed.visitor.aimedAt_ = drawn->emitter;
+    aimed.visitor.record_ = nullptr;
     aimed.steps.lobes = lobe::SpecularTransmission;
-    if constexpr (requires { aimed.steps.stopRecording(); }) aimed.steps.stopRecording();
     if (aimed.arrive(ahead, {Flight::Event::Surface, reach,
                              medium.transmittance(reach) * (phase * drawn->weight * share / density)}))
         aimed.run();
@@ -241,7 +242,7 @@ void tracePath(const PathContext& context, PixelAccumulator& sink, PathCounters&
     transport::Walk walk{
         PathState{
             .random = sampler, .ray = ray, .region = scene.cameraRegion, .timed = !scene.transport.cameraUnwarped},
-        Steps({scene, counters, context.watch}, context.windows, context.record),
+        Steps({scene, counters, context.watch}, context.windows),
         PathVisitor<TimeResolved>(context, sink, counters, source)};
     walk.steps.roulette = context.settings.russianRoulette && !context.windows;
     walk.run();

@@ -55,7 +55,7 @@ class PathVisitor : public transport::VisitorBase {
     PathVisitor(const PathContext& context, PixelAccumulator& sink, PathCounters& counters, const PathTarget* source,
                 const Beside& beside = {})
         : context_(&context), sink_(&sink), counters_(&counters), connector_(context.scene, context.forwardBoundaries),
-          source_(source), beside_(beside) {}
+          source_(source), beside_(beside), record_(context.record) {}
 
     [[nodiscard]] bool mayGoOn(const PathState& path) const { return limits().mayGoOn(path.interactions); }
     bool ahead(PathState& path, auto& steps, const transport::Ahead& ahead);
@@ -106,6 +106,7 @@ class PathVisitor : public transport::VisitorBase {
     transport::Connector connector_;
     const PathTarget* source_;
     Beside beside_;
+    WeightWindows::Record* record_;      ///< null on ways that are aimed
     std::optional<SealedVertex> sealed_; ///< the last vertex, if it is one of a sealed body
     std::optional<WayOut> wayOut_;
     int aimedAt_ = -1; ///< the emitter, of a walk that follows a drawn way out

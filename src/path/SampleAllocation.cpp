@@ -1,7 +1,5 @@
 #include "path/SampleAllocation.h"
 
-#include "path/Tuning.h"
-
 #include <algorithm>
 #include <cmath>
 
@@ -107,15 +105,16 @@ void SampleAllocation::choose() {
         }
         return evenVariance > 0.0 ? variance * cost / (evenVariance * evenCost) : 1.0;
     };
-    double least = tuning::WorthSharing;
     // Few pairs follow what an image has, many what noise leaves.
+    double least = 1.0;
     for (const double pairs : {64.0, 256.0, 1024.0}) {
-        // Both halves must agree: a single bright path makes one of them promise much.
-        const double cost = std::max(predicted(densitiesBy(halves_[0], 0.5 * pairs), halves_[1]),
-                                     predicted(densitiesBy(halves_[1], 0.5 * pairs), halves_[0]));
-        if (cost >= least) continue;
-        least = cost;
-        part_ = cost;
+        const double one = predicted(densitiesBy(halves_[0], 0.5 * pairs), halves_[1]),
+                     other = predicted(densitiesBy(halves_[1], 0.5 * pairs), halves_[0]);
+        // A single bright path makes one half promise much: what they differ by is how little they know.
+        const double doubted = std::max(one, other) + std::abs(one - other);
+        if (doubted >= least) continue;
+        least = doubted;
+        part_ = std::max(one, other);
         densities_ = densitiesBy(all, pairs);
     }
 }

@@ -30,8 +30,8 @@ class SampleAllocation {
     /// What two independent paths of a pixel differ by, half of the squares summed over frames, and what they cost.
     void tell(size_t block, double variance, double cost);
     /// Makes the densities of what was told. They must prove themselves: densities by either half of the pairs are
-    /// judged by the other half, over neighbourhoods of different width, and those whose larger variance x cost is
-    /// least are taken; even ones where none saves a fifth.
+    /// judged by the other half, over neighbourhoods of different width. The larger variance x cost of the two, with
+    /// what they differ by, must be less than that of even samples, and the least is taken.
     void choose();
 
     /// Variance of the image times its cost as the pairs have it, up to a factor, with samples shared out or even; and

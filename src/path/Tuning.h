@@ -37,12 +37,7 @@ inline constexpr Costs Nanoseconds{.plain = {95.0, 110.0, 20.0, 0.0},
                                    .trail = 80.0,
                                    .density = 550.0};
 
-// --- Samples of a pixel ----------------------------------------------------------------------------------------------
-
-/// Variance x cost over that of even samples, as a pilot predicts it, below which pixels get samples as they vary:
-/// verdicts of few bright paths are off by so much. Variance x CPU of slow-nested-glass and plastic-floor-fogcube with
-/// what promised less: 1.28 and 1.19. Bench: study unseen
-inline constexpr double WorthSharing = 0.8;
+// --- Weight windows of plain paths -----------------------------------------------------------------------------------
 
 /// Contributions that a state of weight windows must have, or would have if it were as others, to be told apart from
 /// what is around it. Variance x CPU over plain paths of ten scenes at 30 and 100: 0.62 and 0.74; of slow-nested-glass

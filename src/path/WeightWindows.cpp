@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace tungsten::path {
 
@@ -22,24 +23,22 @@ void WeightWindows::Sums::add(const Sums& other, double part) {
     states += part * other.states;
 }
 
-WeightWindows::WeightWindows(const Scene& scene, double end) : sums_(size_t(2 * Times * Cells * Cells * Cells)) {
-    if (std::isfinite(end) && end > 0.0) timeScale_ = double(Times) / end;
-    const Vec3f low = scene.geometry->boundsMin(), size = scene.geometry->boundsMax() - low;
-    for (int axis = 0; axis < 3; ++axis) {
-        const float scale = float(Cells) / size[axis];
-        if (!(scale > 0.0f && std::isfinite(scale) && std::isfinite(low[axis]))) continue;
-        corner_[axis] = low[axis];
-        cellScale_[axis] = scale;
-    }
+WeightWindows::Axis WeightWindows::Axis::of(std::vector<double> values, int cells) {
+    std::erase_if(values, [](double value) { return !std::isfinite(value); });
+    if (values.empty()) return {};
+    const auto quantile = [&](double part) {
+        const auto place = values.begin() + std::ptrdiff_t(part * double(values.size() - 1));
+        std::nth_element(values.begin(), place, values.end());
+        return *place;
+    };
+    const double start = quantile(0.01), width = quantile(0.99) - start;
+    return {start, width > 0.0 ? double(cells) / width : 0.0};
 }
 
-size_t WeightWindows::stateOf(const transport::PathState& path, const transport::WalkVertex& vertex) const {
-    const auto time = int(std::clamp(path.time * timeScale_, 0.0, double(Times - 1)));
-    int state = (vertex.medium ? Times : 0) + time;
-    for (int axis = 0; axis < 3; ++axis) {
-        const float place = (vertex.position[axis] - corner_[axis]) * cellScale_[axis];
-        state = state * Cells + int(std::clamp(place, 0.0f, float(Cells - 1)));
-    }
+size_t WeightWindows::stateOf(const Vec3f& position, double time, bool inMedium) const {
+    int state = (inMedium ? Times : 0) + times_.cell(time, Times);
+    for (int axis = 0; axis < 3; ++axis)
+        state = state * Cells + places_[size_t(axis)].cell(double(position[axis]), Cells);
     return size_t(state);
 }
 
@@ -49,13 +48,13 @@ double WeightWindows::learn(const Record& path) {
     for (size_t i = path.vertices.size(); i-- > 0;) {
         const Record::Vertex& vertex = path.vertices[i];
         while (found > vertex.found) later += double(path.pilot.value(--found));
-        const double ofOne = later / double(vertex.throughput);
-        const Sums here{ofOne, ofOne * ofOne, double(path.vertices.size() - i), 1.0};
-        sums_[vertex.state].add(here);
-        if (i == 0) starts_.add(here);
+        learned_.push_back({vertex.position, vertex.time, vertex.inMedium, later / double(vertex.throughput),
+                            float(path.vertices.size() - i)});
     }
+    // Of the first vertex, or of a path that met none.
+    const double ofOne = path.vertices.empty() ? 0.0 : learned_.back().found;
+    starts_.add({ofOne, ofOne * ofOne, std::max(double(path.vertices.size()), 1.0), 1.0});
     while (found > 0) later += double(path.pilot.value(--found));
-    if (path.vertices.empty()) starts_.add({later, later * later, 1.0, 1.0});
     return later;
 }
 
@@ -64,9 +63,24 @@ void WeightWindows::learn(const std::array<Record, 2>& pair) {
     variance_ += 0.5 * difference * difference;
 }
 
+auto WeightWindows::byState(const std::vector<Learned>& learned) -> std::vector<Sums> {
+    const auto axisOf = [&](int cells, auto&& value) {
+        std::vector<double> values;
+        for (const Learned& vertex : learned) values.push_back(value(vertex));
+        return Axis::of(std::move(values), cells);
+    };
+    times_ = axisOf(Times, [](const Learned& vertex) { return vertex.time; });
+    for (int axis = 0; axis < 3; ++axis)
+        places_[size_t(axis)] = axisOf(Cells, [=](const Learned& vertex) { return double(vertex.position[axis]); });
+    std::vector<Sums> sums(2 * Times * CellsOfTime);
+    for (const Learned& vertex : learned)
+        sums[stateOf(vertex.position, vertex.time, vertex.inMedium)].add(
+            {vertex.found, vertex.found * vertex.found, double(vertex.vertices), 1.0});
+    return sums;
+}
+
 void WeightWindows::finish() {
-    const std::vector<Sums> sums = std::move(sums_);
-    sums_.clear();
+    const std::vector<Learned> learned = std::exchange(learned_, {});
     if (starts_.effective() < transport::tuning::LeastEffective || !(variance_ > 0.0)) return;
     const double ofStart = std::sqrt(2.0 * variance_ / starts_.vertices);
     const double expected = starts_.effective() / starts_.states;
@@ -79,8 +93,8 @@ void WeightWindows::finish() {
         const double own = std::log(std::max(std::sqrt(value / at.vertices) / ofStart, 0.1 * Least));
         return around + (own - around) * enough / (enough + tuning::EnoughOfState);
     };
-    constexpr auto CellsOfTime = size_t(Cells * Cells * Cells);
-    std::vector<Sums> ofTimes(sums.size() / CellsOfTime);
+    const std::vector<Sums> sums = byState(learned);
+    std::vector<Sums> ofTimes(2 * Times);
     for (size_t state = 0; state < sums.size(); ++state) ofTimes[state / CellsOfTime].add(sums[state]);
     factors_.resize(sums.size());
     for (size_t time = 0; time < ofTimes.size(); ++time) {

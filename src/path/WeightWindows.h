@@ -17,31 +17,30 @@ namespace tungsten::path {
 /// cells of place and time, in a medium or on a surface. Whatever the pilot has missed, images are the same.
 class WeightWindows {
   public:
-    WeightWindows() = default;
-    /// `end`: of the times at which light counts; infinite where all does.
-    WeightWindows(const Scene& scene, double end);
-
     [[nodiscard]] bool any() const { return !factors_.empty(); }
     /// n, for splitting and for roulette, of throughput 1.
     struct Factors {
         float split = 1.0f, survival = 1.0f;
     };
-    [[nodiscard]] const Factors& factors(const transport::PathState& path, const transport::WalkVertex& vertex) const {
-        return factors_[stateOf(path, vertex)];
+    [[nodiscard]] const Factors& factors(const Vec3f& position, double time, bool inMedium) const {
+        return factors_[stateOf(position, time, inMedium)];
     }
 
-    /// A path of a pilot: its vertices, before each of which the pilot had found so many contributions.
+    /// A path of a pilot: its vertices, and how many contributions the pilot had found when the path went on from each.
     struct Record {
         struct Vertex {
-            size_t state, found;
+            Vec3f position;
+            double time;
+            bool inMedium;
             float throughput;
+            size_t found;
         };
-        const WeightWindows& windows;
         transport::SharePilot pilot{};
         std::vector<Vertex> vertices{};
 
         void add(const transport::PathState& path, const transport::WalkVertex& vertex) {
-            vertices.push_back({windows.stateOf(path, vertex), pilot.contributions(), meanComponent(path.throughput)});
+            vertices.push_back({vertex.position, path.time, vertex.medium != nullptr, meanComponent(path.throughput),
+                                pilot.contributions()});
         }
     };
     /// Learns from two paths of a pixel.
@@ -51,7 +50,26 @@ class WeightWindows {
 
   private:
     static constexpr int Times = 32, Cells = 8; ///< along each axis
+    static constexpr auto CellsOfTime = size_t(Cells * Cells * Cells);
 
+    /// Cells of one width along an axis, of which the first and the last have what lies beyond.
+    struct Axis {
+        double start = 0.0, perUnit = 0.0;
+
+        /// Between these values but for a hundredth of them at either end; one cell where these are equal.
+        static Axis of(std::vector<double> values, int cells);
+        [[nodiscard]] int cell(double value, int cells) const {
+            return int(std::min(std::max(0.0, (value - start) * perUnit), double(cells - 1))); // NaN: 0
+        }
+    };
+    /// What a path of throughput 1 found from a vertex on, in so many vertices.
+    struct Learned {
+        Vec3f position;
+        double time;
+        bool inMedium;
+        double found;
+        float vertices;
+    };
     struct Sums {
         double found = 0.0, squares = 0.0, vertices = 0.0, states = 0.0;
 
@@ -60,50 +78,40 @@ class WeightWindows {
         [[nodiscard]] double effective() const { return squares > 0.0 ? found * found / squares : 0.0; }
     };
 
-    [[nodiscard]] size_t stateOf(const transport::PathState& path, const transport::WalkVertex& vertex) const;
-    /// Adds a path to the states of its vertices, and returns what it has found in all.
+    [[nodiscard]] size_t stateOf(const Vec3f& position, double time, bool inMedium) const;
+    /// Chooses the cells, and sums what was learned in each.
+    std::vector<Sums> byState(const std::vector<Learned>& learned);
+    /// Notes a path's vertices, and returns what it has found in all.
     double learn(const Record& path);
 
-    double timeScale_ = 0.0;
-    Vec3f corner_{0.0f}, cellScale_{0.0f};
-    std::vector<Sums> sums_; ///< by state: all cells of one time after those of another
+    std::vector<Learned> learned_;
     Sums starts_;
     double variance_ = 0.0; ///< of a pixel's paths, summed over pairs
-    std::vector<Factors> factors_;
+
+    Axis times_;
+    std::array<Axis, 3> places_;
+    std::vector<Factors> factors_; ///< by state: all cells of one time after those of another
 };
 
-/// Plain steps in as many copies as weight windows say, if there are any; notes their vertices for a record.
+/// Plain steps in as many copies as weight windows say, if there are any.
 template <transport::PlainOptions Options>
 class WindowedSteps : public transport::PlainSteps<Options> {
   public:
-    WindowedSteps(const transport::WalkContext& context, const WeightWindows* windows, WeightWindows::Record* record)
-        : transport::PlainSteps<Options>(context), windows_(windows), record_(record) {}
-    void stopRecording() { record_ = nullptr; }
+    WindowedSteps(const transport::WalkContext& context, const WeightWindows* windows)
+        : transport::PlainSteps<Options>(context), windows_(windows) {}
 
     int copies(transport::PathState& path, const transport::WalkVertex& vertex) {
-        if (record_) record_->add(path, vertex);
         if (!windows_) return 1;
-        const WeightWindows::Factors& factors = windows_->factors(path, vertex);
+        const auto [split, survival] = windows_->factors(vertex.position, path.time, vertex.medium != nullptr);
         const float throughput = meanComponent(path.throughput);
-        if (throughput * factors.split > 2.0f && splits_ < MostSplits) {
-            ++splits_;
-            return std::min(int(throughput * factors.split), MostCopies);
-        }
-        const float survival = throughput * factors.survival;
-        if (!(survival < 0.5f)) return 1;
-        path.random.at(path.interactions, Draw::Roulette);
-        if (!(path.random.next1D() < survival)) return 0;
-        path.throughput = path.throughput / survival;
-        return 1;
+        return splitting_.copies(path, throughput * split, throughput * survival, Draw::Roulette, MostCopies);
     }
 
   private:
-    /// Copies run within each other: a bound on the stack; and on what one vertex may cost.
-    static constexpr int MostSplits = 1000, MostCopies = 4;
+    static constexpr int MostCopies = 4; ///< a bound on what one vertex may cost
 
     const WeightWindows* windows_;
-    WeightWindows::Record* record_;
-    int splits_ = 0; ///< of the path and those that it is a copy of
+    transport::Splitting splitting_;
 };
 
 } // namespace tungsten::path

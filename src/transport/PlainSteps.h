@@ -25,6 +25,31 @@ inline bool survivesRoulette(Rgb& throughput, int interactions, Sampler& sampler
     return true;
 }
 
+/// Keeps what a path is worth for its cost near 1, by splitting and roulette: nothing is done from a half on, and up to
+/// twice that. Whatever worth is given, images are the same.
+class Splitting {
+  public:
+    /// In how many copies the path goes on, at most `most` at once. `split` is what a path of its throughput is worth
+    /// to splitting, and `survival` to roulette, which draws a number of its own.
+    int copies(PathState& path, float split, float survival, Draw draw, int most) {
+        if (split > 2.0f && splits_ < MostSplits) {
+            ++splits_;
+            return split < float(most) ? int(split) : most;
+        }
+        if (!(survival < 0.5f)) return 1;
+        path.random.at(path.interactions, draw);
+        if (!(path.random.next1D() < survival)) return 0;
+        path.throughput = path.throughput / survival;
+        return 1;
+    }
+
+  private:
+    /// Copies run within each other: a bound on the stack, which paths of a million bounces to and fro would meet.
+    static constexpr int MostSplits = 1000;
+
+    int splits_ = 0; ///< of the path and those that it is a copy of
+};
+
 /// Chosen when compiled.
 struct PlainOptions {
     TransportMode mode = TransportMode::Radiance;

@@ -29,69 +29,70 @@ std::string fogBall(const std::string& time) {
            time + "}}";
 }
 
-/// A vertex in a medium.
-struct Place {
-    transport::PathState path;
-    transport::WalkVertex vertex;
+/// Two ways on from a start: half of the paths go to `much`, where every other one finds 4, the others to `little`,
+/// where every other one finds 1. In another unit of length, and delayed.
+struct TwoWays {
+    struct Place {
+        float x;
+        double time;
+    };
+    float unit = 1.0f;
+    double delay = 0.0;
+    Place start{0.0f, 1.0}, much{0.9f, 3.0}, little{-0.9f, 3.0};
 
-    Place(const Medium& fog, float x, double time)
-        : path{.random = Sampler(1, RandomStream::Camera, 0, 0), .time = time}, vertex{&fog,
-                                                                                       nullptr,
-                                                                                       Vec3f(x, 0.0f, 0.0f),
-                                                                                       Vec3f(0.0f, 0.0f, 1.0f),
-                                                                                       {}} {}
-};
-
-struct Learned {
-    GuidedSetup setup{fogBall("5.5")};
-    const Medium& fog = setup.scene.media[0];
-    Place start{fog, 0.0f, 1.0}, much{fog, 0.9f, 3.0}, little{fog, -0.9f, 3.0};
-    WeightWindows windows{setup.scene, 8.0};
-
-    /// Half of the paths go from `start` to `much`, where every other one finds 4, the others to `little`, where every
-    /// other one finds 1.
-    void learn(int pairs) {
+    [[nodiscard]] WeightWindows learned(int pairs) const {
+        WeightWindows windows;
         Sampler numbers(7, RandomStream::Pilot, 0, 0);
         for (int i = 0; i < pairs; ++i) {
-            std::array<WeightWindows::Record, 2> pair{WeightWindows::Record{windows}, WeightWindows::Record{windows}};
-            for (WeightWindows::Record& record : pair) {
-                record.pilot.begin(Strategy::Plain);
-                record.add(start.path, start.vertex);
+            std::array<WeightWindows::Record, 2> pair;
+            for (auto& [pilot, vertices] : pair) {
+                pilot.begin(Strategy::Plain);
                 const bool lucky = numbers.next1D() < 0.5f;
-                const Place& next = lucky ? much : little;
-                record.add(next.path, next.vertex);
-                if (numbers.next1D() < 0.5f) record.pilot.tell(lucky ? 4.0f : 1.0f, 0, 0.0f, Found::Aside);
+                for (const Place& at : {start, lucky ? much : little})
+                    vertices.push_back({positionOf(at), timeOf(at), true, 1.0f, 0});
+                if (numbers.next1D() < 0.5f) pilot.tell(lucky ? 4.0f : 1.0f, 0, 0.0f, Found::Aside);
             }
             windows.learn(pair);
         }
         windows.finish();
+        return windows;
     }
-    [[nodiscard]] WeightWindows::Factors at(const Place& place) const {
-        return windows.factors(place.path, place.vertex);
+    [[nodiscard]] WeightWindows::Factors at(const WeightWindows& windows, const Place& place,
+                                            bool inMedium = true) const {
+        return windows.factors(positionOf(place), timeOf(place), inMedium);
     }
+
+  private:
+    [[nodiscard]] Vec3f positionOf(const Place& at) const { return {unit * at.x, 0.0f, 0.0f}; }
+    [[nodiscard]] double timeOf(const Place& at) const { return double(unit) * at.time + delay; }
 };
 
+/// In any unit, and however far from the start of times: cells are where paths are.
 TEST(WeightWindows, FactorsAreRootsOfVarianceOverCost) {
-    Learned learned;
-    learned.learn(40000);
-    ASSERT_TRUE(learned.windows.any());
     // Of what paths find: variance 17/4 - 25/16 for two vertices; then 8 - 4 and 1/2 - 1/4, squares of 8 and 1/2, for
     // one.
     const double start = std::sqrt((17.0 / 4.0 - 25.0 / 16.0) / 2.0);
-    EXPECT_NEAR(learned.at(learned.much).split, 2.0 / start, 0.03);
-    EXPECT_NEAR(learned.at(learned.much).survival, std::sqrt(8.0) / start, 0.03);
-    EXPECT_NEAR(learned.at(learned.little).split, 0.5 / start, 0.03);
-    EXPECT_NEAR(learned.at(learned.little).survival, std::sqrt(0.5) / start, 0.03);
-    EXPECT_NEAR(learned.at(learned.start).split, 1.0, 0.03);
-    const WeightWindows::Factors elsewhere = learned.at(Place(learned.fog, 0.3f, 7.0));
-    EXPECT_EQ(elsewhere.split, 1.0f) << "where no path came";
-    EXPECT_EQ(elsewhere.survival, 1.0f);
+    for (const TwoWays& ways : {TwoWays{}, TwoWays{.unit = 1e-3f, .delay = 5e4}, TwoWays{.unit = 1e6f}}) {
+        const WeightWindows windows = ways.learned(40000);
+        ASSERT_TRUE(windows.any());
+        EXPECT_NEAR(ways.at(windows, ways.much).split, 2.0 / start, 0.03);
+        EXPECT_NEAR(ways.at(windows, ways.much).survival, std::sqrt(8.0) / start, 0.03);
+        EXPECT_NEAR(ways.at(windows, ways.little).split, 0.5 / start, 0.03);
+        EXPECT_NEAR(ways.at(windows, ways.little).survival, std::sqrt(0.5) / start, 0.03);
+        EXPECT_NEAR(ways.at(windows, ways.start).split, 1.0, 0.03);
+        for (const bool inMedium : {true, false}) {
+            const WeightWindows::Factors elsewhere = ways.at(windows, {0.3f, 2.0}, inMedium);
+            EXPECT_EQ(elsewhere.split, 1.0f) << "where no path came";
+            EXPECT_EQ(elsewhere.survival, 1.0f);
+        }
+        // No place is beyond the cells.
+        EXPECT_EQ(ways.at(windows, {1e30f, 1e30}).split, ways.at(windows, ways.much).split);
+        EXPECT_GT(windows.factors(Vec3f(std::nanf("")), double(Infinity), false).split, 0.0f);
+    }
 }
 
 TEST(WeightWindows, AreNoneWhereLittleIsFound) {
-    Learned learned;
-    learned.learn(8);
-    EXPECT_FALSE(learned.windows.any());
+    EXPECT_FALSE(TwoWays{}.learned(8).any());
 }
 
 struct PixelMean {
@@ -122,9 +123,9 @@ PixelMean meanOf(const GuidedSetup& setup, const WeightWindows* windows) {
 
 /// Windows that were learned from what no path finds: the left is worth much, the right nothing, and all is late.
 TEST(WeightWindows, ImagesDoNotDependOnThem) {
-    Learned wrong;
-    wrong.learn(40000);
-    const PixelMean plain = meanOf(wrong.setup, nullptr), windowed = meanOf(wrong.setup, &wrong.windows);
+    const GuidedSetup setup(fogBall("5.5"));
+    const WeightWindows wrong = TwoWays{}.learned(40000);
+    const PixelMean plain = meanOf(setup, nullptr), windowed = meanOf(setup, &wrong);
     EXPECT_LT(plain.error, 0.02 * plain.value);
     EXPECT_NEAR(windowed.value, plain.value, 4.5 * std::hypot(plain.error, windowed.error));
     EXPECT_NE(windowed.value, plain.value) << "they were used";

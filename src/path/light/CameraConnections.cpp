@@ -60,27 +60,15 @@ class StepsToDetectors : public transport::PlainLightSteps {
         importance_.emplace(*scene.camera.detectors(), medium && medium->scatters(), position);
     }
 
-    /// Throughput times importance stays about 1: from half on, and up to twice that, nothing is done.
     int copies(transport::PathState& path, const transport::WalkVertex& vertex) {
         if (!vertex.medium) return 1;
         const float worth = meanComponent(path.throughput) * importance_->at(vertex.position, *vertex.medium);
-        if (worth > 2.0f && splits_ < MostSplits) {
-            ++splits_;
-            return int(worth);
-        }
-        if (!(worth < 0.5f)) return 1;
-        path.random.at(path.interactions, Draw::Connection);
-        if (!(path.random.next1D() < worth)) return 0;
-        path.throughput = path.throughput / worth;
-        return 1;
+        return splitting_.copies(path, worth, worth, Draw::Connection, std::numeric_limits<int>::max());
     }
 
   private:
-    /// Copies run within each other: a bound on the stack, which paths of a million bounces to and fro would meet.
-    static constexpr int MostSplits = 1000;
-
     std::optional<DetectorImportance> importance_;
-    int splits_ = 0; ///< of the path and those that it is a copy of
+    transport::Splitting splitting_;
 };
 
 } // namespace
