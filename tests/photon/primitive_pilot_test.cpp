@@ -86,51 +86,44 @@ TEST(PrimitivePilot, ChoosesAlikeWithAnyThreads) {
     EXPECT_EQ(measured[0].passes, measured[1].passes);
 }
 
+Film render(const Loaded& loaded, const PhotonSettings& settings, uint64_t passes) {
+    PhotonIntegrator integrator(loaded.scene, settings);
+    SceneFacts facts = analyseScene(*loaded.scene);
+    Features features;
+    integrator.plan(facts, features);
+    Statistics statistics;
+    integrator.prepare(facts, {}, statistics);
+    Film film(16, 16, 1);
+    for (uint64_t pass = 0; pass < passes; ++pass) {
+        film.beginPass();
+        integrator.renderPass({.seed = pass}, film, statistics);
+        film.endPass(1.0);
+    }
+    return film;
+}
+PhotonSettings only(PhotonSettings settings, const VolumePrimitive& primitive) {
+    settings.primitive = primitive;
+    settings.alternatives = {primitive};
+    return settings;
+}
+
 /// The pilot's random numbers are its own.
 TEST(PrimitivePilot, RendersAsTheChosenPrimitive) {
     const Loaded loaded = load("0.05");
-    PhotonSettings chosen = loaded.settings;
-    chosen.primitive = loaded.measured().primitive;
-    chosen.alternatives = {chosen.primitive};
-    std::vector<Film> films;
-    for (const PhotonSettings& settings : {loaded.settings, chosen}) {
-        PhotonIntegrator integrator(loaded.scene, settings);
-        SceneFacts facts = analyseScene(*loaded.scene);
-        Features features;
-        integrator.plan(facts, features);
-        Statistics statistics;
-        integrator.prepare(facts, {}, statistics);
-        Film& film = films.emplace_back(16, 16, 1);
-        film.beginPass();
-        integrator.renderPass({.seed = 7}, film, statistics);
-        film.endPass(1.0);
-    }
-    ASSERT_GT(meanValue(films[0]), 0.0);
+    const Film asked = render(loaded, loaded.settings, 1),
+               chosen = render(loaded, only(loaded.settings, loaded.measured().primitive), 1);
+    ASSERT_GT(meanValue(asked), 0.0);
     for (int y = 0; y < 16; ++y)
-        for (int x = 0; x < 16; ++x) EXPECT_EQ(films[0].mean(0).at(x, y), films[1].mean(0).at(x, y)) << x << ' ' << y;
+        for (int x = 0; x < 16; ++x) EXPECT_EQ(asked.mean(0).at(x, y), chosen.mean(0).at(x, y)) << x << ' ' << y;
 }
 
 /// Rays that look for records find an empty store, as in a room with haze so thin that few paths scatter in it.
 TEST(PrimitivePilot, GathersFromEmptyStores) {
     const Loaded loaded = load("1e-6", {"camera.type=thinlens", "camera.aperture_size=0.1", "camera.focus_distance=4"});
     for (const VolumePrimitive& primitive : {VolumePrimitive(Points{}), VolumePrimitive(Beams{})}) {
-        PhotonSettings settings = loaded.settings;
-        settings.primitive = primitive;
-        settings.alternatives = {primitive};
+        PhotonSettings settings = only(loaded.settings, primitive);
         settings.photonCount = 1;
-        PhotonIntegrator integrator(loaded.scene, settings);
-        SceneFacts facts = analyseScene(*loaded.scene);
-        Features features;
-        integrator.plan(facts, features);
-        Statistics statistics;
-        integrator.prepare(facts, {}, statistics);
-        Film film(16, 16, 1);
-        for (uint64_t seed = 0; seed < 4; ++seed) {
-            film.beginPass();
-            integrator.renderPass({.seed = seed}, film, statistics);
-            film.endPass(1.0);
-        }
-        EXPECT_TRUE(std::isfinite(meanValue(film)));
+        EXPECT_TRUE(std::isfinite(meanValue(render(loaded, settings, 4))));
     }
 }
 
