@@ -46,8 +46,15 @@ Decision refractedOf(const Scene& scene, const PathSettings& settings, const Sce
 /// What a pilot of camera paths may choose.
 Decision adaptiveOf(const Scene& scene, bool wanted, const std::string& does) {
     const bool on = wanted && !scene.camera.detectors();
-    return {on,
-            on ? does : "the preset, its own option, detectors, or guided paths that have no plain ones beside them"};
+    return {
+        on,
+        on ? does
+           : "the preset, its own option, detectors, nothing to see, or guided paths without plain ones beside them"};
+}
+
+/// Some light can be met.
+bool shines(const SceneFacts& facts) {
+    return facts.surfaceEmission || facts.environment;
 }
 
 /// Plain paths may be taken alone.
@@ -93,6 +100,9 @@ PathPlan PathPlan::of(const Scene& scene, const PathSettings& settings, const Sc
         adaptiveOf(scene, settings.policy.allocatesSamples(), "more samples where paths vary more for what they cost");
     plan.weightWindows = adaptiveOf(scene, settings.policy.usesWeightWindows() && mayBePlain(settings, plan),
                                     "plain paths alone split and end by what those of a pilot found");
+    plan.lightsInView = adaptiveOf(
+        scene, settings.policy.expectsLightsInView() && mayBePlain(settings, plan) && plan.media && shines(facts),
+        "plain paths alone see lights through media in expectation");
     plan.refracted = refractedOf(scene, settings, facts);
     plan.lightVertices = lightVerticesOf(plan, scene, settings, facts);
     plan.reflectedLight.on = plan.lightVertices.on && LightCaches::reflectedIn(scene);
@@ -113,7 +123,7 @@ SamplingSummary PathPlan::summary(const Scene& scene, const PathSettings& settin
     const bool connects = settings.lightSampling || settings.volumeLightSampling;
     said.ends = transport::describeEnds({{guidance.on && policy.sampling.elliptical, "control vertices"},
                                          {connects, "connections to lights"},
-                                         {facts.surfaceEmission || facts.environment, "lights that are met"},
+                                         {shines(facts), "lights that are met"},
                                          {lightVertices.on, lightVertices.reason},
                                          {reflectedLight.on, reflectedLight.reason},
                                          {refracted.on, refracted.reason},
@@ -139,6 +149,7 @@ void PathPlan::describe(const Scene& scene, const PathSettings& settings, const 
     add("plain paths beside them", balance, {"integrator.darts"}, {counter::PilotPaths});
     add("adaptive samples", allocation, {"integrator.darts"}, {"pilot samples"});
     add("weight windows", weightWindows, {"integrator.darts"}, {counter::WindowPilotPaths});
+    add("lights in view in expectation", lightsInView, {"integrator.darts"}, {counter::LightsInView});
     add("refractive connections", refracted, {"integrator.darts"}, {counter::RefractiveConnections});
     add("EDA table", edaTable, {"integrator.darts"}, {counter::DirectionTables});
     if (guidance.on) transport::EscapeModels::plan(scene, settings.policy, features);

@@ -22,6 +22,7 @@ struct PathPlan {
     Decision balance;               ///< beside plain ones
     Decision allocation;            ///< pixels get samples as their paths vary and cost
     Decision weightWindows;         ///< plain paths split and end by what those of a pilot found
+    Decision lightsInView;          ///< plain paths see them through media in expectation
     Decision lightVertices;         ///< walks connect to surface points that light reaches first
     Decision reflectedLight;        ///< and to where glossy surfaces throw light
     Decision refracted;             ///< plain walks aim at emitters through the walls of sealed bodies

@@ -20,9 +20,9 @@ namespace tungsten::path {
 namespace {
 
 constexpr size_t TileSide = 8;
-constexpr double PilotFrame = 10.0;       ///< nanoseconds for each frame of a path in that pilot
-constexpr uint32_t MostSampleRounds = 64; ///< pairs of a block of pixels in a pilot of samples
-constexpr double PilotPart = 0.35;        ///< of the cost of a pilot of shares: those of samples and of windows
+constexpr double PilotFrame = 10.0;            ///< nanoseconds for each frame of a path in that pilot
+constexpr uint32_t MostSamplePairs = 1u << 16; ///< in a pilot of samples
+constexpr double PilotPart = 0.35;             ///< of the cost of a pilot of shares: those of samples and of windows
 constexpr uint32_t SamplesPerPoll = 16;
 constexpr double LightPathsPart = 0.1; ///< of a pass
 /// Multiples of it, modulo 1, fill the unit interval evenly from any place on.
@@ -40,6 +40,7 @@ void report(const PathCounters& counters, Statistics& statistics) {
     statistics.add(counter::RefractiveConnections, counters.refracted);
     statistics.add("connections", counters.connections);
     statistics.add(counter::ArrivalsAtDetectors, counters.intoDetectors);
+    statistics.add(counter::LightsInView, counters.inView);
     statistics.add("arrivals while the sensor is open", counters.arrivals);
     statistics.add(counter::ArrivalsInGate, counters.timed);
     statistics.add(counter::ArrivalsInLaterFrames, counters.laterFrames);
@@ -88,7 +89,9 @@ void PathTracer::prepare(const SceneFacts& facts, const ProgressToken& watch, St
         refracted_.emplace().prepare(*scene_, facts.excludedEmitters, watch);
     }
     if (plan_.guidance.on) prepareGuides(facts, watch, statistics);
-    if (plan_.allocation.on || plan_.weightWindows.on) allocateSamples(watch, statistics);
+    if (plan_.allocation.on || plan_.weightWindows.on || plan_.lightsInView.on) allocateSamples(watch, statistics);
+    if (plan_.balance.on)
+        statistics.add("plain camera paths, in thousandths", uint64_t(std::lround(1000.0 * double(balance_.plain))));
 }
 
 void PathTracer::prepareGuides(const SceneFacts& facts, const ProgressToken& watch, Statistics& statistics) {
@@ -229,7 +232,9 @@ PathContext PathTracer::plainContext(const ProgressToken& watch) const {
             refracted_ ? &*refracted_ : nullptr,
             plan_.forwardBoundaries,
             watch,
-            weightWindows_.any() ? &weightWindows_ : nullptr};
+            weightWindows_.any() ? &weightWindows_ : nullptr,
+            nullptr,
+            lightsInView_};
 }
 
 template <typename Use>
@@ -301,40 +306,76 @@ void PathTracer::allocateSamples(const ProgressToken& watch, Statistics& statist
         lightCaches_.trace(*scene_, *targets_, tuning::FewestPaths, pass, ignored);
     }
     if (refracted_) refracted_->trace(pass);
-    SampleAllocation plain(scene_->camera.resolution), windowed = plain;
-    const bool windows = plan_.weightWindows.on && takesWindows(plain, windowed, watch, statistics);
-    if (!plan_.allocation.on) return;
-    if (!windows && (guides() || plain.pairs() == 0.0)) {
-        allocation_ = SampleAllocation(scene_->camera.resolution);
-        measureSamples(allocation_, watch, statistics);
-    } else {
-        allocation_ = std::move(windows ? windowed : plain);
-    }
+    std::optional<SampleAllocation> plain;
+    if (plan_.weightWindows.on || plan_.lightsInView.on) plain = improvePlainPaths(watch, statistics);
+    if (plan_.allocation.on) allocation_ = plain ? std::move(*plain) : measureSamples(watch, statistics);
 }
 
-bool PathTracer::takesWindows(SampleAllocation& plain, SampleAllocation& windowed, const ProgressToken& watch,
-                              Statistics& statistics) {
-    WeightWindows windows = learnWindows(watch, statistics);
-    if (!windows.any()) return false;
+std::optional<SampleAllocation> PathTracer::improvePlainPaths(const ProgressToken& watch, Statistics& statistics) {
+    const StrategyBalance chosen = std::exchange(balance_, {1.0f, 0.0f});
+    lightsInView_ = plan_.lightsInView.on && seesLights(watch);
+    WeightWindows windows = plan_.weightWindows.on ? learnWindows(watch, statistics) : WeightWindows();
+    const bool inView = std::exchange(lightsInView_, false);
     const auto worth = [&](const SampleAllocation& allocation) {
         return plan_.allocation.on ? allocation.varianceTimesCost() : allocation.varianceTimesCostOfEven();
     };
-    const StrategyBalance chosen = std::exchange(balance_, {1.0f, 0.0f});
-    measureSamples(plain, watch, statistics);
-    weightWindows_ = std::move(windows);
-    measureSamples(windowed, watch, statistics);
-    // Few bright paths have most of a variance: windows must be better by two standard errors.
-    const double ratio = worth(windowed) * gainOfBalance_ / worth(plain);
-    if (ratio * (1.0 + 2.0 * std::hypot(plain.relativeError(), windowed.relativeError())) < 1.0) return true;
+    // Few bright paths have most of a variance: better is what is so by some standard errors.
+    const auto beats = [&](const SampleAllocation& one, const SampleAllocation& other, double gainOfOther,
+                           double errors) {
+        const double ratio = worth(one) * gainOfOther / worth(other);
+        return ratio * (1.0 + errors * std::hypot(one.relativeError(), other.relativeError())) < 1.0;
+    };
+    if (inView || windows.any()) {
+        const SampleAllocation plain = measureSamples(watch, statistics);
+        SampleAllocation best = plain;
+        if (inView) {
+            // The same paths without the randomness of their first flights: no doubt is needed.
+            lightsInView_ = true;
+            SampleAllocation viewed = measureSamples(watch, statistics);
+            lightsInView_ = worth(viewed) < worth(plain);
+            if (lightsInView_) best = std::move(viewed);
+        }
+        if (windows.any()) {
+            weightWindows_ = std::move(windows);
+            SampleAllocation windowed = measureSamples(watch, statistics);
+            if (beats(windowed, best, 1.0, 1.0))
+                best = std::move(windowed);
+            else
+                weightWindows_ = {};
+        }
+        const bool mixed = plan_.guidance.on && chosen.guided > 0.0f;
+        if (!mixed || beats(best, plain, gainOfBalance_, 2.0)) return best;
+    }
     weightWindows_ = {};
+    lightsInView_ = false;
     balance_ = chosen;
-    return false;
+    return std::nullopt;
 }
 
-void PathTracer::measureSamples(SampleAllocation& allocation, const ProgressToken& watch,
-                                Statistics& statistics) const {
+bool PathTracer::seesLights(const ProgressToken& watch) const {
+    const PathContext context = plainContext(watch);
+    const Vec2i size = scene_->camera.resolution;
+    Film probe(1, 1, sensor_.gate.frames, {.moments = false});
+    PathCounters counters;
+    for (uint32_t i = 0; i < transport::tuning::MostPilotPaths && counters.inView == 0; ++i) {
+        Sampler sampler(transport::PilotKey, RandomStream::Pilot, 3, i);
+        const Vec2f place = sampler.next2D(), uFilter = sampler.next2D(), uLens = sampler.next2D();
+        const Vec2i pixel{std::min(int(place.x * float(size.x)), size.x - 1),
+                          std::min(int(place.y * float(size.y)), size.y - 1)};
+        PixelAccumulator sink(probe, sensor_, 0, 0, 1, counters);
+        const PathVisitor<true> visitor(context, sink, counters, nullptr);
+        visitor.addLightsInView(PathState{.random = sampler,
+                                          .ray = scene_->camera.generateRay(pixel, uFilter, uLens),
+                                          .region = scene_->cameraRegion,
+                                          .timed = !scene_->transport.cameraUnwarped});
+    }
+    return counters.inView > 0;
+}
+
+SampleAllocation PathTracer::measureSamples(const ProgressToken& watch, Statistics& statistics) const {
     const StageTimer timer(statistics, "pilot of samples");
     constexpr uint64_t Key = transport::PilotKey;
+    SampleAllocation allocation(scene_->camera.resolution);
     const int frames = sensor_.gate.frames;
     Film probe(1, 1, frames, {.moments = false});
     std::vector<Rgb> before(static_cast<size_t>(frames));
@@ -367,10 +408,11 @@ void PathTracer::measureSamples(SampleAllocation& allocation, const ProgressToke
         allocation.tell(block, variance, own);
         cost += own + 2.0 * PilotFrame * double(frames);
     };
-    watch.stage("pilot of samples", MostSampleRounds);
+    const auto mostRounds = uint32_t(MostSamplePairs / allocation.blocks());
+    watch.stage("pilot of samples", mostRounds);
     withPaths(watch, [&](const auto& trace) {
-        for (uint32_t round = 0;
-             round < MostSampleRounds && cost < PilotPart * double(transport::tuning::MostPilotCost); ++round) {
+        for (uint32_t round = 0; round < mostRounds && cost < PilotPart * double(transport::tuning::MostPilotCost);
+             ++round) {
             for (size_t block = 0; block < allocation.blocks(); ++block) {
                 watch.advanceWithin(SamplesPerPoll, block + 1);
                 tracePair(trace, block);
@@ -380,6 +422,7 @@ void PathTracer::measureSamples(SampleAllocation& allocation, const ProgressToke
     });
     allocation.choose();
     statistics.add("pilot samples", traced);
+    return allocation;
 }
 
 double PathTracer::cost(const PathCounters& counters, const tuning::Costs::Walk& each) const {
@@ -470,7 +513,6 @@ void PathTracer::chooseShare(const ProgressToken& watch, Statistics& statistics)
     const bool enough = pilot.effective(Strategy::Alone) >= transport::tuning::LeastEffective;
     gainOfBalance_ = time == 1.0 ? 1.0 : enough ? score(1.0) / score(time) : double(Infinity);
     statistics.add(counter::PilotPaths, traced);
-    statistics.add("plain camera paths, in thousandths", uint64_t(std::lround(1000.0 * double(balance_.plain))));
 }
 
 } // namespace tungsten::path

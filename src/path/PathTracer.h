@@ -34,13 +34,14 @@ class PathTracer : public Integrator {
     /// Points that the paths of the pass aim at.
     [[nodiscard]] const TargetChoice& targets() const { return guides() ? *targets_ : *sources_; }
     /// Measures how much pixels vary, by pairs of paths as they are now.
-    void measureSamples(SampleAllocation& allocation, const ProgressToken& watch, Statistics& statistics) const;
-    /// Shares samples out, and takes plain paths with weight windows where they are worth more than what was chosen.
+    [[nodiscard]] SampleAllocation measureSamples(const ProgressToken& watch, Statistics& statistics) const;
+    /// Shares samples out, and takes improved plain paths where they are worth more than what was chosen.
     void allocateSamples(const ProgressToken& watch, Statistics& statistics);
-    /// True if plain paths with windows, which it leaves in place, are surely better than what was chosen; measures
-    /// plain ones without and with them.
-    bool takesWindows(SampleAllocation& plain, SampleAllocation& windowed, const ProgressToken& watch,
-                      Statistics& statistics);
+    /// Plain paths alone may have lights in view in expectation and weight windows. What a pilot finds better is left
+    /// in place, with the samples it measured; none if the chosen balance stays, or if nothing could be better.
+    std::optional<SampleAllocation> improvePlainPaths(const ProgressToken& watch, Statistics& statistics);
+    /// Some ray of a pilot meets a light through a medium in time.
+    [[nodiscard]] bool seesLights(const ProgressToken& watch) const;
     [[nodiscard]] WeightWindows learnWindows(const ProgressToken& watch, Statistics& statistics) const;
     /// use(trace) of the paths that the plan and the shares ask for: trace(ray, sink, counters, sampler, u, strategy)
     /// traces one; u chooses among targets, and strategy, uniform too, among strategies.
@@ -82,6 +83,7 @@ class PathTracer : public Integrator {
     StrategyBalance balance_;
     double gainOfBalance_ = 1.0; ///< variance x cost of plain paths alone over that at this balance, by the pilot
     SampleAllocation allocation_;
+    bool lightsInView_ = false;                                   ///< of plain paths alone: in expectation
     WeightWindows weightWindows_;                                 ///< of plain paths alone
     std::unique_ptr<const transport::EscapeModels> escapeModels_; ///< null: media are taken for infinite
     LightCaches lightCaches_;                                     ///< of the pass

@@ -43,8 +43,7 @@ bool PathVisitor<TimeResolved, Beside>::arrive(PathState& path, auto&, const Ahe
     if (tooLate(path)) return false;
     beside_.arrive(path, ahead, flight);
     if (flight.event == Flight::Event::Surface) {
-        const uint32_t shape = ahead.hit->shape;
-        if (shape < scene().primitives.size() && scene().primitives[shape].emitter >= 0) addEmission(path, *ahead.hit);
+        if (!inExpectation(path)) addEmission(path, *ahead.hit);
         if (limits().endsAtSurface(path.mediumScatters)) return false;
     }
     return limits().mayGoOn(path.interactions);
@@ -99,6 +98,7 @@ bool PathVisitor<TimeResolved, Beside>::sharesWithConnections(const PathState& p
         return settings().volumeLightSampling;
     case Kind::Surface:
         return settings().lightSampling;
+    case Kind::Start:
     case Kind::Specular:
         return false; // emitters seen in a mirror cannot be connected to
     }
@@ -119,7 +119,8 @@ float PathVisitor<TimeResolved, Beside>::shareOfMeeting(const PathState& path, i
 }
 
 template <bool TimeResolved, typename Beside>
-void PathVisitor<TimeResolved, Beside>::addEmission(const PathState& path, const SurfaceHit& hit) {
+void PathVisitor<TimeResolved, Beside>::addEmission(const PathState& path, const SurfaceHit& hit) const {
+    if (hit.shape >= scene().primitives.size() || scene().primitives[hit.shape].emitter < 0) return;
     const int index = scene().primitives[hit.shape].emitter;
     const Emitter& emitter = scene().emitters[size_t(index)];
     const Rgb radiance = emittedRadiance(emitter, hit.uv, hit.ng, -path.ray.direction);
@@ -139,7 +140,7 @@ void PathVisitor<TimeResolved, Beside>::addEmission(const PathState& path, const
 }
 
 template <bool TimeResolved, typename Beside>
-void PathVisitor<TimeResolved, Beside>::addEnvironment(const PathState& path) {
+void PathVisitor<TimeResolved, Beside>::addEnvironment(const PathState& path) const {
     if (scene().infiniteEmitters.empty() || scene().medium(path.region) || !limits().renders(path.interactions) ||
         !orderCounts(path))
         return;
@@ -233,17 +234,45 @@ float PathVisitor<TimeResolved, Beside>::refractedShare(int emitter) const {
     return transport::balance(wayOut_->pdf, density);
 }
 
+template <bool TimeResolved, typename Beside>
+struct PathVisitor<TimeResolved, Beside>::View : transport::VisitorBase {
+    const PathVisitor* paths;
+    bool throughMedium = false;
+
+    explicit View(const PathVisitor* of) : paths(of) {}
+    [[nodiscard]] bool mayGoOn(const PathState& path) const { return paths->limits().mayGoOn(path.interactions); }
+    bool ahead(PathState& path, auto&, const Ahead& ahead) {
+        throughMedium |= ahead.medium != nullptr;
+        return !ahead.medium || !ahead.medium->scatters() || transport::BounceLimits::fly(path.flights, *ahead.medium);
+    }
+    void escape(PathState& path) { paths->addEnvironment(path); }
+    bool arrive(PathState& path, auto&, const Ahead& ahead, const Flight&) {
+        const uint64_t before = paths->counters_->arrivals;
+        paths->addEmission(path, *ahead.hit);
+        if (throughMedium) paths->counters_->inView += paths->counters_->arrivals - before;
+        return !paths->limits().endsAtSurface(path.mediumScatters);
+    }
+};
+
+template <bool TimeResolved, typename Beside>
+void PathVisitor<TimeResolved, Beside>::addLightsInView(const PathState& start) const {
+    transport::Walk walk{
+        start, transport::StraightSteps<TransportMode::Radiance>({scene(), *counters_, context_->watch}), View(this)};
+    walk.steps.lobes = lobe::Forward;
+    walk.run();
+}
+
 template <bool TimeResolved, bool Media>
 void tracePath(const PathContext& context, PixelAccumulator& sink, PathCounters& counters, const Sampler& sampler,
                const PathTarget* source, const Ray& ray) {
     const Scene& scene = context.scene;
     ++counters.paths;
     using Steps = WindowedSteps<transport::PlainOptions{.media = Media, .timed = TimeResolved}>;
-    transport::Walk walk{
-        PathState{
-            .random = sampler, .ray = ray, .region = scene.cameraRegion, .timed = !scene.transport.cameraUnwarped},
-        Steps({scene, counters, context.watch}, context.windows),
-        PathVisitor<TimeResolved>(context, sink, counters, source)};
+    const PathState start{
+        .random = sampler, .ray = ray, .region = scene.cameraRegion, .timed = !scene.transport.cameraUnwarped};
+    PathVisitor<TimeResolved> visitor(context, sink, counters, source);
+    if (context.lightsInView) visitor.addLightsInView(start);
+    transport::Walk walk{start, Steps({scene, counters, context.watch}, context.windows), visitor};
     walk.steps.roulette = context.settings.russianRoulette && !context.windows;
     walk.run();
 }

@@ -26,6 +26,7 @@ struct PathContext {
     const ProgressToken& watch;
     const WeightWindows* windows = nullptr;  ///< null: paths go on as they are
     WeightWindows::Record* record = nullptr; ///< of a path of a pilot
+    bool lightsInView = false;               ///< in expectation: see PathVisitor::addLightsInView
 };
 
 /// What weighs a plain path's contributions beside guided ones: nothing, where all paths are plain.
@@ -59,12 +60,19 @@ class PathVisitor : public transport::VisitorBase {
 
     [[nodiscard]] bool mayGoOn(const PathState& path) const { return limits().mayGoOn(path.interactions); }
     bool ahead(PathState& path, auto& steps, const transport::Ahead& ahead);
-    void escape(PathState& path) { addEnvironment(path); }
+    void escape(PathState& path) {
+        if (!inExpectation(path)) addEnvironment(path);
+    }
     bool arrive(PathState& path, auto& steps, const transport::Ahead& ahead, const transport::Flight& flight);
     bool vertex(PathState& path, auto& steps, const transport::WalkVertex& vertex);
     void leave(PathState& path, auto& steps, const transport::WalkVertex& vertex, const transport::Way& way);
 
+    /// Lights that the path, which has not started, sees straight on through media and forward lobes, attenuated as
+    /// transmittance has it: no flight needs to get there.
+    void addLightsInView(const PathState& start) const;
+
   private:
+    struct View; ///< visitor of that straight walk
     /// The way out of a sealed body, from its last vertex, as long as it meets nothing but surfaces.
     struct WayOut {
         SealedVertex from;
@@ -80,12 +88,17 @@ class PathVisitor : public transport::VisitorBase {
     [[nodiscard]] bool orderCounts(const PathState& path, int further = 0) const {
         return limits().orderCounts(path.mediumScatters + further);
     }
+    /// Light that the path meets now has been added by addLightsInView().
+    [[nodiscard]] bool inExpectation(const PathState& path) const {
+        return context_->lightsInView && path.last.kind == transport::LastVertex::Kind::Start;
+    }
     /// The present direction was drawn at a vertex that was connected to lights, too.
     [[nodiscard]] bool sharesWithConnections(const PathState& path) const;
     /// Whether light found from the path's vertex on can still arrive inside the gate.
     [[nodiscard]] bool tooLate(const PathState& path) const;
-    void addEmission(const PathState& path, const SurfaceHit& hit);
-    void addEnvironment(const PathState& path);
+    /// If the surface shines.
+    void addEmission(const PathState& path, const SurfaceHit& hit) const;
+    void addEnvironment(const PathState& path) const;
     // Light that connections of the vertex bring: of an emitter, and of the virtual source.
     void connectToLight(PathState& path, const transport::Vertex& vertex);
     void connectToTarget(const PathState& path, const transport::Vertex& vertex, const PathTarget& target,

@@ -23,7 +23,7 @@ using transport::StrategyBalance;
 /// What happened, counted by one worker.
 struct PathCounters : transport::StepCounters {
     uint64_t shadowRays = 0, paths = 0, controlVertices = 0, lightVertices = 0, reflectedLight = 0, refracted = 0,
-             connections = 0, intoDetectors = 0, nonFinite = 0, densities = 0, plainPaths = 0;
+             connections = 0, intoDetectors = 0, inView = 0, nonFinite = 0, densities = 0, plainPaths = 0;
     uint64_t arrivals = 0, timed = 0, laterFrames = 0, weighed = 0; ///< timed: at a sensor that is not always open
 };
 

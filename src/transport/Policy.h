@@ -15,7 +15,8 @@ struct Policy {
     darts::SamplingOptions sampling;
     DirectView directView = DirectView::Auto; ///< of photon maps
     std::optional<float> plainShare;          ///< of the time; none: by a pilot
-    std::optional<bool> surfaceConnections, glossyCameraSubpaths, singleFrames, bodies, adaptiveSamples, weightWindows;
+    std::optional<bool> surfaceConnections, glossyCameraSubpaths, singleFrames, bodies, adaptiveSamples, weightWindows,
+        lightsInView;
 
     [[nodiscard]] bool guides() const { return sampling.on; }
     /// Light paths also connect their vertices to visible surfaces, camera paths theirs to surfaces that light reaches
@@ -30,6 +31,8 @@ struct Policy {
     [[nodiscard]] bool allocatesSamples() const { return guides() && adaptiveSamples.value_or(!sampling.published); }
     /// Plain paths of a path tracer may split and end by what those of a pilot found.
     [[nodiscard]] bool usesWeightWindows() const { return guides() && weightWindows.value_or(!sampling.published); }
+    /// Plain paths of a path tracer may add lights that they see through media in expectation.
+    [[nodiscard]] bool expectsLightsInView() const { return guides() && lightsInView.value_or(!sampling.published); }
     /// Bodies of media end where their boundaries are, for sampling too; otherwise every medium is taken for infinite.
     [[nodiscard]] bool followsBodies() const { return guides() && bodies.value_or(!sampling.published); }
 };
@@ -68,6 +71,9 @@ Policy readPolicy(const Block& block) {
             flag(object, "adaptive_samples", "paths: more samples of pixels that vary more", WithBest);
         policy.weightWindows =
             flag(object, "weight_windows", "paths: plain ones split and end by what those of a pilot found", WithBest);
+        policy.lightsInView = flag(
+            object, "lights_in_view",
+            "paths: lights seen straight through media are added with their transmittance, in expectation", WithBest);
         policy.bodies = flag(object, "bodies", "media end at their boundaries for sampling too", WithBest);
     });
     return policy;

@@ -15,9 +15,9 @@ namespace tungsten::transport {
 
 /// The last vertex that a walk has not passed straight: where its present direction was drawn.
 struct LastVertex {
-    enum class Kind { Specular, Surface, Medium }; ///< Specular: mirrors, refraction, and where the walk starts
+    enum class Kind { Start, Specular, Surface, Medium }; ///< Specular: mirrors and refraction
 
-    Kind kind = Kind::Specular;
+    Kind kind = Kind::Start;
     Vec3f position{0.0f};
     float pdf = 0.0f; ///< of the present direction, per solid angle (Way::pdf)
 };

@@ -242,7 +242,7 @@ TEST_F(Scripted, ArrivesWithTheFlightsWeightAndTimeAndLeavesWithTheWaysWeight) {
     EXPECT_EQ(arrived.ray.origin, Vec3f(0.0f, 2.0f, 0.0f));
     EXPECT_EQ(arrived.ray.direction, Downwards);
     EXPECT_TRUE(arrived.scattered);
-    EXPECT_EQ(arrived.last.kind, LastVertex::Kind::Specular) << "where the walk started";
+    EXPECT_EQ(arrived.last.kind, LastVertex::Kind::Start);
     EXPECT_EQ(log_.at("leave").throughput.x, 0.5f) << "before it takes the way";
     EXPECT_EQ(log_.at("leave").ray.direction, Downwards);
     EXPECT_EQ(left.throughput.x, 0.125f);
@@ -291,7 +291,7 @@ TEST_F(Scripted, StraightPassagesAndMirrorsLeaveWhatTheyMust) {
         EXPECT_EQ(left.scattered, scattered) << vertex;
         EXPECT_EQ(left.timed, scattered) << "time starts where the camera's specular chain ends " << vertex;
     };
-    expectLeft(0, Kind::Specular, 0.0f, false);
+    expectLeft(0, Kind::Start, 0.0f, false);
     expectLeft(1, Kind::Specular, 0.0f, false);
     expectLeft(2, Kind::Surface, 0.6f, true);
     expectLeft(3, Kind::Surface, 0.6f, true);

@@ -51,6 +51,7 @@ inline constexpr CounterName SurfaceEvents{"surface events"};
 inline constexpr CounterName FlightDensities{"flights with densities of guided paths"};
 inline constexpr CounterName ShadowRays{"shadow rays"};
 inline constexpr CounterName LightPaths{"light paths"};
+inline constexpr CounterName LightsInView{"lights seen through media in expectation"};
 inline constexpr CounterName WindowPilotPaths{"pilot paths of weight windows"};
 inline constexpr CounterName PilotPaths{"pilot paths"};
 inline constexpr CounterName DirectionTables{"direction tables"};

@@ -78,7 +78,7 @@ void EmittersMet::add(const GuidedPath& path, const SurfaceHit& hit, const Rgb& 
     const Rgb radiance = emittedRadiance(*target.emitter, hit.uv, hit.ng, -path.state.ray.direction);
     if (isBlack(radiance)) return;
     float weight = 1.0f;
-    if (path.state.last.kind != Kind::Specular)
+    if (path.state.last.kind == Kind::Surface || path.state.last.kind == Kind::Medium)
         weight =
             transport::powerHeuristic(density(path), target.pdfFrom(path.state.last.position, hit.position, hit.ng));
     path.sink.add(throughput * radiance * (weight / target.choice.ofPath), path.state.timeAfter(hit.t) + target.start,
