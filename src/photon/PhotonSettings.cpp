@@ -51,6 +51,9 @@ std::vector<VolumePrimitive> alternativesIn(const Scene& scene, const PhotonSett
     std::vector<VolumePrimitive> alternatives{Points{}};
     const SceneFacts facts = analyseScene(scene);
     if (!facts.mediumScattering || !facts.heterogeneousMedia.empty()) return alternatives;
+    // About the peak of a phase function beams have no bound, and slices, which rarely meet it, are dark with little
+    // noise: a pilot would take either for better than it is.
+    if (largestPeak(scene) > tuning::MostGuidedPeak) return alternatives;
     const bool hasRadius = settings.volumeRadius < Unbounded;
     if (hasRadius) alternatives.push_back(Beams{});
     if (facts.speedsDiffer && !scene.transport.cameraUnwarped) return alternatives; // slices would have to be gathered

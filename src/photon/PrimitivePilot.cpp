@@ -125,8 +125,13 @@ class Comparison {
         : best_(pilots.front()->primitive()), pilots_(std::move(pilots)), pixelRatio_(pixelRatio) {}
 
     [[nodiscard]] bool undecided() const {
-        return pilots_.size() > 1 && next_ <= tuning::MostPasses &&
-               cost_ < (slicesAhead_ ? tuning::SliceCost : 1.0) * double(transport::tuning::MostPilotCost);
+        constexpr auto Budget = double(transport::tuning::MostPilotCost);
+        if (pilots_.size() == 1 || next_ > tuning::MostPasses) return false;
+        if (cost_ < Budget) return true;
+        // More than that only where slices, with a lead as it is, would prove themselves by it.
+        const double passes = 0.5 * next_ * tuning::SliceCost * Budget / cost_;
+        return cost_ < tuning::SliceCost * Budget &&
+               leadOfSlices_ * std::min(passes, double(tuning::MostPasses)) > tuning::SlicePasses;
     }
     /// Renders as many passes of each again as there are, and drops what is far worse.
     void render() {
@@ -142,15 +147,16 @@ class Comparison {
                          [&](const auto& a, const auto& b) { return error(a) < error(b); });
         // What slices contribute has no bound. Were their variance to grow with the number of passes, as it does with
         // the heaviest tails, they would be ahead of kernels until so many: till then kernels compete by themselves.
-        const auto kernel =
-            std::find_if(pilots_.begin(), pilots_.end(), [](const auto& pilot) { return isKernel(*pilot); });
-        const double least = error(pilots_.front());
-        const bool proven = kernel == pilots_.end() || double(next_) * error(*kernel) > tuning::SlicePasses * least;
-        const double leastOfKernels = proven ? least : error(*kernel);
-        slicesAhead_ = !isKernel(*pilots_.front());
-        best_ = (slicesAhead_ && !proven ? *kernel : pilots_.front())->primitive();
+        const double least = error(pilots_.front()), doubt = 1.0 / std::sqrt(double(next_));
+        const Pilot* const kernel = bestKernel(error, 1.0 + doubt);
+        const double lead = kernel ? error(kernel) / least : Infinity;
+        const bool slicesAhead = !isKernel(*pilots_.front()),
+                   proven = slicesAhead && double(next_) * lead > tuning::SlicePasses;
+        leadOfSlices_ = slicesAhead && !proven ? lead : 0.0;
+        best_ = (kernel && !proven ? kernel : pilots_.front().get())->primitive();
+        const double leastOfKernels = kernel && !proven ? error(kernel) : least;
         // Variances of so many passes are known to about this factor.
-        const double factor = 1.0 + tuning::FarWorse / std::sqrt(double(next_));
+        const double factor = 1.0 + tuning::FarWorse * doubt;
         if (std::isfinite(least))
             std::erase_if(pilots_, [&](const auto& pilot) {
                 if (error(pilot) <= factor * (isKernel(*pilot) ? leastOfKernels : least)) return false;
@@ -168,11 +174,21 @@ class Comparison {
 
   private:
     static bool isKernel(const Pilot& pilot) { return !std::holds_alternative<Slices>(pilot.primitive()); }
+    /// Points, or beams if they are better by more than the factor: at flat angles what they contribute has no bound,
+    /// so that few passes make them look better than they are. Null where slices alone are left.
+    [[nodiscard]] const Pilot* bestKernel(const auto& error, double factor) const {
+        const Pilot *points = nullptr, *beams = nullptr;
+        for (const auto& pilot : pilots_) {
+            if (std::holds_alternative<Points>(pilot->primitive())) points = pilot.get();
+            if (std::holds_alternative<Beams>(pilot->primitive())) beams = pilot.get();
+        }
+        return !points || (beams && factor * error(beams) < error(points)) ? beams : points;
+    }
 
     VolumePrimitive best_;
     std::vector<std::unique_ptr<Pilot>> pilots_;
     double pixelRatio_, cost_ = 0.0;
-    bool slicesAhead_ = false;
+    double leadOfSlices_ = 0.0;           ///< over kernels, which they have yet to prove
     uint32_t next_ = tuning::LeastPasses; ///< passes of each
     uint64_t dropped_ = 0;                ///< passes of those that are no longer in the running
 };

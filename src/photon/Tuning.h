@@ -41,8 +41,9 @@ inline constexpr uint32_t HighlightPaths = 16;
 /// Bench: study bodies
 inline constexpr float TowardsBodies = 0.2f;
 
-/// Guided paths of slices, up to this |g| of phase functions. Variance x CPU, guided against plain: 0.5 at 0, 0.8 at
-/// 0.5, 1.3 at 0.7, 7 at 0.9; without the leg 0.5 at 0 and 0.7, 1.1 at 0.9. Bench: study liu-primitives
+/// Guided paths of slices, and what `auto` measures beside points, up to this |g| of phase functions. Variance x CPU,
+/// guided against plain: 0.5 at 0, 0.8 at 0.5, 1.3 at 0.7, 7 at 0.9; without the leg 0.5 at 0 and 0.7, 1.1 at 0.9.
+/// Bench: study liu-primitives
 inline constexpr float MostGuidedPeak = 0.6f;
 
 /// Where beams make the first order, the part of the other slices that is kept: beams want many light paths, and are

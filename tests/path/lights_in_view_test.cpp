@@ -126,8 +126,8 @@ uint64_t inView(const std::unique_ptr<test::Rendered>& rendered) {
 }
 
 TEST(LightsInView, LessenTheErrorOfBestPaths) {
-    const auto with = render(R"("best")"),
-                   without = render(R"({"preset": "best", "lights_in_view": false})"), plain = render(R"("off")");
+    const auto with = render(R"("best")"), without = render(R"({"preset": "best", "lights_in_view": false})"),
+               plain = render(R"("off")");
     EXPECT_GT(inView(with), 0u);
     EXPECT_EQ(inView(without), 0u);
     EXPECT_EQ(inView(plain), 0u);

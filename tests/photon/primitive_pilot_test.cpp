@@ -66,6 +66,12 @@ TEST(PrimitivePilot, ChoosesFromWhatTheSceneAllows) {
     EXPECT_EQ(alternativesOf(load("2", {"integrator.volume_gather_radius=1e30"})), Types{"points"})
         << "no radius for beams, to which slices leave what comes in through surfaces";
     EXPECT_EQ(alternativesOf(load("2", {"integrator.volume_photon_type=beams"})), Types{"beams"});
+    const auto peaked = [](const std::string& g) {
+        return load("2", {R"(media.fog.phase_function={"type": "henyey_greenstein", "g": )" + g + "}"});
+    };
+    EXPECT_EQ(alternativesOf(peaked("0.9")), Types{"points"}) << "a pilot would be misled";
+    EXPECT_EQ(alternativesOf(peaked("-0.9")), Types{"points"});
+    EXPECT_EQ(alternativesOf(peaked("0.5")).size(), 4u);
 }
 
 /// One scattering on the way: a beam says more of it than a point. With many, and behind glass, points do.
