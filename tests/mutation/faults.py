@@ -877,7 +877,7 @@ FAULTS = [
      [("path_tests", "LightsInView.AreNotThoseInMirrors")]),
     ("src/photon/PhotonSettings.cpp", "if (largestPeak(scene) > tuning::MostGuidedPeak) return alternatives;", "",
      [("photon_tests", "PrimitivePilot.ChoosesFromWhatTheSceneAllows")]),
-    ("src/path/SampleAllocation.cpp", "if (doubted >= least) continue;", "",
+    ("src/path/SampleAllocation.cpp", "std::max(one, other) + std::abs(one - other);", "0.0;",
      [("path_tests", "SampleAllocation.IsEvenWhereDifferencesAreNoise")]),
     ("src/path/SampleAllocation.cpp", "std::sqrt(block.variance / block.cost)", "std::sqrt(block.variance * block.cost)",
      [("path_tests", "SampleAllocation.IsNeymans")]),

@@ -20,9 +20,9 @@ constexpr Vec2i Size{8, 6};
 
 /// Variance `variance(x, y)` and cost `cost(x, y)` of every pixel.
 template <typename Variance, typename Cost>
-SampleAllocation allocationOf(const Variance& variance, const Cost& cost) {
+SampleAllocation allocationOf(const Variance& variance, const Cost& cost, int rounds = 200) {
     SampleAllocation allocation(Size);
-    for (int round = 0; round < 200; ++round)
+    for (int round = 0; round < rounds; ++round)
         for (size_t block = 0; block < allocation.blocks(); ++block) {
             const Vec2i pixel = allocation.pixelOf(block, 0.5f, 0.5f);
             allocation.tell(block, variance(pixel.x, pixel.y), cost(pixel.x, pixel.y));
@@ -81,8 +81,10 @@ TEST(SampleAllocation, CostsWhatAnEvenOneDoes) {
 TEST(SampleAllocation, IsEvenWhereDifferencesAreNoise) {
     Sampler sampler(1, RandomStream::Pilot, 0, 0);
     const auto tails = [&](int, int) { return std::pow(1.0 - sampler.nextDouble(), -0.9); };
-    const SampleAllocation allocation = allocationOf(tails, [](int, int) { return 1.0; });
-    for (int x = 0; x < Size.x; ++x) EXPECT_EQ(allocation.of(x, 2, 0, 16).count, 16u);
+    const SampleAllocation allocation = allocationOf(
+        tails, [](int, int) { return 1.0; }, 8);
+    for (int y = 0; y < Size.y; ++y)
+        for (int x = 0; x < Size.x; ++x) EXPECT_EQ(allocation.of(x, y, 0, 16).count, 16u);
 }
 
 /// Numbers of samples go on where the pass before has ended, however passes are cut.
