@@ -245,12 +245,20 @@ struct PathVisitor<TimeResolved, Beside>::View : transport::VisitorBase {
         throughMedium |= ahead.medium != nullptr;
         return !ahead.medium || !ahead.medium->scatters() || transport::BounceLimits::fly(path.flights, *ahead.medium);
     }
-    void escape(PathState& path) { paths->addEnvironment(path); }
+    void escape(PathState& path) {
+        counting([&] { paths->addEnvironment(path); });
+    }
     bool arrive(PathState& path, auto&, const Ahead& ahead, const Flight&) {
-        const uint64_t before = paths->counters_->arrivals;
-        paths->addEmission(path, *ahead.hit);
-        if (throughMedium) paths->counters_->inView += paths->counters_->arrivals - before;
+        counting([&] { paths->addEmission(path, *ahead.hit); });
         return !paths->limits().endsAtSurface(path.mediumScatters);
+    }
+
+  private:
+    /// What counts of the light that `add` adds, if it has come through a medium.
+    void counting(const auto& add) const {
+        const uint64_t before = paths->counters_->arrivals;
+        add();
+        if (throughMedium) paths->counters_->inView += paths->counters_->arrivals - before;
     }
 };
 

@@ -873,6 +873,8 @@ FAULTS = [
      [("path_tests", "WeightWindows.ImagesDoNotDependOnThem"), ("path_tests", "DetectorPower.OfBothSides*")]),
     ("src/path/PathVisitor.h", "return context_->lightsInView && path.last.kind", "return false && path.last.kind",
      [("path_tests", "LightsInView.AreThoseThatFlightsFind")]),
+    ("src/path/PathVisitor.cpp", "counting([&] { paths->addEnvironment(path); });", "paths->addEnvironment(path);",
+     [("path_tests", "LightsInView.OfTheSkyAreTakenWhereTheyHelp")]),
     ("src/path/PathVisitor.cpp", "walk.steps.lobes = lobe::Forward;", "",
      [("path_tests", "LightsInView.AreNotThoseInMirrors")]),
     ("src/photon/PhotonSettings.cpp", "if (largestPeak(scene) > tuning::MostGuidedPeak) return alternatives;", "",

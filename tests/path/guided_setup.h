@@ -10,6 +10,7 @@
 
 #include "support/SceneFile.h"
 
+#include "tungsten/film/FilmErrors.h"
 #include "tungsten/scene/SceneLoader.h"
 
 namespace tungsten::path {
@@ -42,5 +43,26 @@ struct GuidedSetup {
     TargetChoice targets{scene, TargetChoice::Emitters::All, {}, true};
     LightChoice lights{scene, std::vector<bool>(scene.emitters.size())};
 };
+
+struct PixelMean {
+    Rgb value;
+    double mean, error; ///< of all channels together
+};
+/// Of passes of one pixel, by trace(sink, counters, i) of the i-th path.
+template <typename Trace>
+PixelMean meanOfPaths(const GuidedSetup& setup, uint32_t passes, uint32_t paths, const Trace& trace) {
+    PathCounters counters;
+    Film film(1, 1, 1);
+    uint32_t traced = 0;
+    for (uint32_t pass = 0; pass < passes; ++pass) {
+        film.beginPass();
+        {
+            PixelAccumulator sink(film, setup.sensor, 0, 0, paths, counters);
+            for (uint32_t i = 0; i < paths; ++i, ++traced) trace(sink, counters, traced);
+        }
+        film.endPass(double(paths));
+    }
+    return {film.mean(0).at(0, 0), meanValue(film), relativeStandardError(film) * meanValue(film)};
+}
 
 } // namespace tungsten::path

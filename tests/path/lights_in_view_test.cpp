@@ -32,28 +32,13 @@ std::string lampBehindFog(const std::string& transport) {
 constexpr const char *StraightOnly = R"("max_bounces": 4, "transient_time_center": 7, "transient_time_width": 1)",
                      *Scattered = R"("max_bounces": 16, "transient_time_center": 7, "transient_time_width": 1)";
 
-struct PixelMean {
-    Rgb value;
-    double mean, error;
-};
 /// Of many paths along the same ray.
 PixelMean along(const Ray& ray, const GuidedSetup& setup, bool lightsInView) {
-    constexpr uint32_t Passes = 100, Paths = 200;
     PathContext context = setup.plain();
     context.lightsInView = lightsInView;
-    PathCounters counters;
-    Film film(1, 1, 1);
-    uint32_t traced = 0;
-    for (uint32_t pass = 0; pass < Passes; ++pass) {
-        film.beginPass();
-        {
-            PixelAccumulator sink(film, setup.sensor, 0, 0, Paths, counters);
-            for (uint32_t i = 0; i < Paths; ++i, ++traced)
-                tracePath<true, true>(context, sink, counters, {3, RandomStream::Camera, traced, 0}, nullptr, ray);
-        }
-        film.endPass(double(Paths));
-    }
-    return {film.mean(0).at(0, 0), meanValue(film), relativeStandardError(film) * meanValue(film)};
+    return meanOfPaths(setup, 100, 200, [&](PixelAccumulator& sink, PathCounters& counters, uint32_t i) {
+        tracePath<true, true>(context, sink, counters, {3, RandomStream::Camera, i, 0}, nullptr, ray);
+    });
 }
 const Ray AlongZ{Vec3f(0.0f, 0.0f, -4.0f), Vec3f(0.0f, 0.0f, 1.0f)};
 
@@ -105,14 +90,15 @@ TEST(LightsInView, CountAsPathsDo) {
     EXPECT_EQ(seen(R"("max_bounces": 4, "transient_time_center": 5, "transient_time_width": 1)"), 0.0) << "later";
 }
 
+constexpr const char* SkyBehindFog = R"({
+    "media": [{"name": "fog", "type": "homogeneous", "sigma_s": 0, "sigma_a": 0.5}],
+    "camera": {"type": "pinhole", "fov": 20, "resolution": 4, "transform": {"position": [0, 0, -4]}},
+    "primitives": [{"type": "cube", "int_medium": "fog", "bsdf": {"type": "forward"}, "transform": {"scale": 2}},
+                   {"type": "infinite_sphere", "emission": 3}],
+    "integrator": {"type": "path_tracer", "max_bounces": 8}})";
+
 TEST(LightsInView, AreEnvironmentsToo) {
-    const GuidedSetup setup(R"({
-        "media": [{"name": "fog", "type": "homogeneous", "sigma_s": 0, "sigma_a": 0.5}],
-        "camera": {"type": "pinhole", "fov": 20, "resolution": 4, "transform": {"position": [0, 0, -4]}},
-        "primitives": [{"type": "cube", "int_medium": "fog", "bsdf": {"type": "forward"}, "transform": {"scale": 2}},
-                       {"type": "infinite_sphere", "emission": 3}],
-        "integrator": {"type": "path_tracer", "max_bounces": 8}})");
-    const PixelMean seen = along(AlongZ, setup, true);
+    const PixelMean seen = along(AlongZ, GuidedSetup(SkyBehindFog), true);
     EXPECT_NEAR(seen.mean, 3.0 * std::exp(-1.0), 1e-5);
     EXPECT_LT(seen.error, 1e-5);
 }
@@ -137,6 +123,15 @@ TEST(LightsInView, LessenTheErrorOfBestPaths) {
     const auto errorOf = [&](const auto& of) { return relativeStandardError(of->film) * meanValue(of->film) / 4.0; };
     EXPECT_NEAR(meanValue(with->film), mean, 4.5 * std::hypot(errorOf(with), errorOf(plain)));
     EXPECT_LT(errorOf(with), 0.8 * errorOf(without));
+}
+
+/// Where fog takes more of the sky than it scatters; where it only absorbs, flights have no randomness to take away.
+TEST(LightsInView, OfTheSkyAreTakenWhereTheyHelp) {
+    const auto withFog = [](const std::string& sigmaS) {
+        return test::renderPaths(SkyBehindFog, {{"integrator.darts=best", "media.*.sigma_s=" + sigmaS}, 1, 16});
+    };
+    EXPECT_GT(inView(withFog("0.1")), 0u);
+    EXPECT_EQ(inView(withFog("0")), 0u);
 }
 
 } // namespace

@@ -95,30 +95,15 @@ TEST(WeightWindows, AreNoneWhereLittleIsFound) {
     EXPECT_FALSE(TwoWays{}.learned(8).any());
 }
 
-struct PixelMean {
-    double value, error;
-};
 /// Of many plain paths, by whatever windows.
 PixelMean meanOf(const GuidedSetup& setup, const WeightWindows* windows) {
-    constexpr uint32_t Passes = 300, Paths = 400;
     PathContext context = setup.plain();
     context.windows = windows;
-    PathCounters counters;
-    Film film(1, 1, 1);
-    uint32_t traced = 0;
-    for (uint32_t pass = 0; pass < Passes; ++pass) {
-        film.beginPass();
-        {
-            PixelAccumulator sink(film, setup.sensor, 0, 0, Paths, counters);
-            for (uint32_t i = 0; i < Paths; ++i, ++traced) {
-                Sampler sampler(3, RandomStream::Camera, traced, 0);
-                const Ray ray = setup.scene.camera.generateRay({3, 3}, sampler.next2D(), sampler.next2D());
-                tracePath<true, true>(context, sink, counters, sampler, nullptr, ray);
-            }
-        }
-        film.endPass(double(Paths));
-    }
-    return {meanValue(film), relativeStandardError(film) * meanValue(film)};
+    return meanOfPaths(setup, 300, 400, [&](PixelAccumulator& sink, PathCounters& counters, uint32_t i) {
+        Sampler sampler(3, RandomStream::Camera, i, 0);
+        const Ray ray = setup.scene.camera.generateRay({3, 3}, sampler.next2D(), sampler.next2D());
+        tracePath<true, true>(context, sink, counters, sampler, nullptr, ray);
+    });
 }
 
 /// Windows that were learned from what no path finds: the left is worth much, the right nothing, and all is late.
@@ -126,9 +111,9 @@ TEST(WeightWindows, ImagesDoNotDependOnThem) {
     const GuidedSetup setup(fogBall("5.5"));
     const WeightWindows wrong = TwoWays{}.learned(40000);
     const PixelMean plain = meanOf(setup, nullptr), windowed = meanOf(setup, &wrong);
-    EXPECT_LT(plain.error, 0.02 * plain.value);
-    EXPECT_NEAR(windowed.value, plain.value, 4.5 * std::hypot(plain.error, windowed.error));
-    EXPECT_NE(windowed.value, plain.value) << "they were used";
+    EXPECT_LT(plain.error, 0.02 * plain.mean);
+    EXPECT_NEAR(windowed.mean, plain.mean, 4.5 * std::hypot(plain.error, windowed.error));
+    EXPECT_NE(windowed.mean, plain.mean) << "they were used";
 }
 
 struct WindowedRender {
