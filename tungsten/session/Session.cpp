@@ -479,7 +479,7 @@ class Session {
     bool black_ = false; ///< nothing arrives: no pass is rendered
     Trace trace_;
     ProgressReporter reporter_;
-    Clock::time_point start_; ///< of passes
+    Clock::time_point start_ = Clock::now(); ///< of passes, once they begin
 };
 
 } // namespace
