@@ -63,9 +63,12 @@ auto SampleAllocation::densitiesBy(const Blocks& told, double pairs) const -> De
         wanted.push_back(block.cost > 0.0 ? std::sqrt(block.variance / block.cost) : 0.0);
         cost += block.cost;
     }
-    // Powers of two make whole numbers of samples of passes of four or more, however samples are cut into them.
+    // 2^k and 3/2 2^k make whole numbers of samples of passes of 8, 16, ..., however samples are cut into them.
     const auto rounded = [](double density) {
-        return std::clamp(std::exp2(std::round(std::log2(std::max(density, 1e-6)))), double(Least), double(Most));
+        const double octaves = std::log2(std::max(density, 1e-6)), whole = std::floor(octaves), rest = octaves - whole;
+        constexpr double Half = 0.5849625007211562; // log2(3/2)
+        const double step = rest < 0.5 * Half ? 1.0 : rest < 0.5 * (1.0 + Half) ? 1.5 : 2.0;
+        return std::clamp(std::exp2(whole) * step, double(Least), double(Most));
     };
     const auto taken = [&](double scale) {
         double sum = 0.0;

@@ -10,14 +10,14 @@
 
 namespace tungsten::path {
 
-/// Density of samples over the image, relative to an even one: powers of two between Least and Most, with a
+/// Density of samples over the image, relative to an even one: 2^k and 3/2 2^k between Least and Most, with a
 /// cost-weighted mean of about 1, so that a pass takes as long as an even one. Even until something was measured.
 class SampleAllocation {
   public:
     /// No pixel gets less than this part of its even share: its variance is at most the inverse times that of even
     /// samples, whatever the pilot has missed. Passes of fewer samples a pixel than FewestSamples stay even, since some
     /// pixels would have none.
-    static constexpr float Least = 0.25f, Most = 4.0f;
+    static constexpr float Least = 0.25f, Most = 32.0f;
     static constexpr uint32_t FewestSamples = 4;
 
     SampleAllocation() = default;
