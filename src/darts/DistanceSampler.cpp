@@ -211,12 +211,14 @@ Shape DistanceSampler::shapeFor(const TimeBudget& budget) const {
     return budget.escape.straightExit ? Shape::FirstPassage : Shape::TimeBound;
 }
 
-auto DistanceSampler::surfaceEvent(float surface, float firstLeg, const Vec3& throughput) const -> SurfaceEvent {
+auto DistanceSampler::surfaceEvent(const TimeBudget& budget, float surface, float firstLeg,
+                                   const Vec3& throughput) const -> SurfaceEvent {
     if (!((surface < firstLeg || !settings_.bounded) && surface < std::numeric_limits<float>::infinity())) return {};
     const Vec3 reaching = transmittance(surface);
     const float total = throughput.x + throughput.y + throughput.z;
     const float natural = !scatters_ ? 1.0f : grey_ || !(total > 0) ? reaching.x : dot(throughput, reaching) / total;
-    return {natural, reaching};
+    const float likely = natural * budget.surfaceOdds;
+    return {likely / (likely + (1.0f - natural)), reaching};
 }
 
 CandidateDraw DistanceSampler::drawOf(const TimeBudget& budget, const Heading& ray, const Ellipse<float>& latest,
@@ -239,7 +241,7 @@ DistanceDensity DistanceSampler::density(const TimeBudget& budget, const Heading
                                          const Vec3& throughput) const {
     const Ellipse<float> latest = budget.latest(ray.h);
     const float firstLeg = latest.firstLeg(), bound = std::min(surface, firstLeg);
-    const SurfaceEvent event = surfaceEvent(surface, firstLeg, throughput);
+    const SurfaceEvent event = surfaceEvent(budget, surface, firstLeg, throughput);
     if (!scatters_ || !(event.probability < 1.0f) || !(bound > 0)) return DistanceDensity(event.probability);
     CandidateDraw draw = drawOf(budget, ray, latest, bound, throughput);
     if (budget.low > 0) draw.kink = Ellipse<float>{budget.C, budget.low, ray.h}.firstLeg();
@@ -264,7 +266,7 @@ DistanceSample DistanceSampler::sample(const TimeBudget& budget, const Heading& 
         return this->sample(density(budget, ray, surface, throughput), surface, random.event, random.choice);
     const Ellipse<float> latest = budget.latest(ray.h);
     const float firstLeg = latest.firstLeg();
-    const SurfaceEvent event = surfaceEvent(surface, firstLeg, throughput);
+    const SurfaceEvent event = surfaceEvent(budget, surface, firstLeg, throughput);
     if (event.probability > 0 && random.event < event.probability)
         return {surface, true, event.reaching * (1.0f / event.probability)};
     const float bound = settings_.bounded ? std::min(surface, firstLeg) : surface;

@@ -118,7 +118,8 @@ class DistanceSampler {
         float probability = 0;
         Vec3 reaching;
     };
-    [[nodiscard]] SurfaceEvent surfaceEvent(float surface, float firstLeg, const Vec3& throughput) const;
+    [[nodiscard]] SurfaceEvent surfaceEvent(const TimeBudget& budget, float surface, float firstLeg,
+                                            const Vec3& throughput) const;
     /// What a draw of distances in the medium needs, up to a bound above 0.
     [[nodiscard]] CandidateDraw drawOf(const TimeBudget& budget, const Heading& ray, const Ellipse<float>& latest,
                                        float bound, const Vec3& throughput) const;

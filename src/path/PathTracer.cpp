@@ -24,6 +24,7 @@ constexpr double PilotFrame = 10.0;            ///< nanoseconds for each frame o
 constexpr uint32_t MostSamplePairs = 1u << 16; ///< in a pilot of samples
 constexpr double PilotPart = 0.35;             ///< of the cost of a pilot of shares: that of samples
 constexpr double WindowsPart = 0.1;            ///< of the same: a pilot of weight windows, which need few paths
+constexpr double SurfaceOddsPart = 0.1;        ///< of the same: a pilot of the odds of surfaces in view
 constexpr uint32_t SamplesPerPoll = 16;
 constexpr double LightPathsPart = 0.1; ///< of a pass
 /// Multiples of it, modulo 1, fill the unit interval evenly from any place on.
@@ -222,7 +223,8 @@ GuidedContext PathTracer::guidedContext(const ProgressToken& watch) const {
             escapeModels_.get(),
             plan_.forwardBoundaries,
             watch,
-            balance_};
+            balance_,
+            surfaceOdds_};
 }
 
 PathContext PathTracer::plainContext(const ProgressToken& watch) const {
@@ -445,10 +447,48 @@ PathCosts PathTracer::costs(const StrategyCounters& counters) const {
             cost(counters.guided, tuning::Nanoseconds.guided)};
 }
 
+float PathTracer::measureSurfaceOdds(const ProgressToken& watch) const {
+    constexpr uint64_t Key = transport::PilotKey;
+    const Vec2i size = scene_->camera.resolution;
+    FirstFlight first;
+    GuidedContext guided = guidedContext(watch);
+    guided.firstFlight = &first;
+    guided.forwardBoundaries = plan_.indexMatched; // what is counted must not differ otherwise
+    PathCounters counters;
+    SharePilot pilot;
+    Sampler places(Key, RandomStream::Pilot, 4, 0);
+    // A path finds x. With p the probability that its first flight ends at a surface, odds k times as good make of the
+    // variance, but for what does not depend on k, E[p (1 - p) (E[x^2 | surface] / k + k E[x^2 | medium])].
+    double ofSurfaces = 0.0, ofMedia = 0.0, met = 0.0;
+    for (uint32_t i = 0; i < transport::tuning::MostPilotPaths; ++i) {
+        if (i >= transport::tuning::LeastPilotPaths && met == 0.0) return 1.0f;
+        if (cost(counters, tuning::Nanoseconds.guided) > SurfaceOddsPart * double(transport::tuning::MostPilotCost))
+            break;
+        const Vec2i pixel{std::min(int(places.next1D() * float(size.x)), size.x - 1),
+                          std::min(int(places.next1D() * float(size.y)), size.y - 1)};
+        Sampler sampler(Key, RandomStream::Pilot, 5, i);
+        const Vec2f uFilter = sampler.next2D(), uLens = sampler.next2D();
+        const Ray ray = scene_->camera.generateRay(pixel, uFilter, uLens);
+        PixelAccumulator sink(pilot, sensor_, counters);
+        const size_t window = windows_->choose(places.next1D());
+        pilot.begin(Strategy::Guided);
+        sink.begin(Strategy::Guided, balance_, (*windows_)[window]);
+        first = {};
+        Sampler light = sampler.branch(RandomStream::Target, 0);
+        if (const auto target = targets_->sample(radicalInverse(i), light, watch, counters))
+            traceGuidedPath(guided, sink, counters, sampler, *target, ray, window);
+        const double found = pilot.foundByLast(), probability = double(first.probability);
+        met += probability * (1.0 - probability);
+        (first.atSurface ? ofSurfaces : ofMedia) += found * found * (first.atSurface ? 1.0 - probability : probability);
+    }
+    if (pilot.effective(Strategy::Guided) < transport::tuning::LeastEffective || !(ofMedia > 0.0)) return 1.0f;
+    return std::clamp(float(std::sqrt(ofSurfaces / ofMedia)), 1.0f / tuning::MostSurfaceOdds, tuning::MostSurfaceOdds);
+}
+
 void PathTracer::chooseShare(const ProgressToken& watch, Statistics& statistics) {
     const std::optional<float> asked = settings_.policy.plainShare;
-    if (asked && (*asked == 0.0f || *asked == 1.0f)) {
-        balance_ = {*asked, 1.0f - *asked};
+    if (asked == 1.0f) {
+        balance_ = {1.0f, 0.0f};
         return;
     }
     const StageTimer timer(statistics, "pilot of plain and guided paths");
@@ -461,11 +501,17 @@ void PathTracer::chooseShare(const ProgressToken& watch, Statistics& statistics)
         constexpr size_t GuidedPaths = transport::tuning::MostPilotPaths / 2;
         lightCaches_.trace(*scene_, *targets_, GuidedPaths, PassInfo{.seed = Key, .watch = watch}, ignored);
     }
+    if (!targets_->any()) return;
+    surfaceOdds_ = measureSurfaceOdds(watch);
+    statistics.add("odds of surfaces in view, in thousandths", uint64_t(std::lround(1000.0 * double(surfaceOdds_))));
+    if (asked == 0.0f) {
+        balance_ = {0.0f, 1.0f};
+        return;
+    }
     GuidedContext guided = guidedContext(watch);
     PathContext plain = plainContext(watch);
     guided.forwardBoundaries = plain.forwardBoundaries =
         plan_.indexMatched; // what is counted must not differ otherwise
-    if (!targets_->any()) return;
     const auto width = uint64_t(scene_->camera.resolution.x), pixels = width * uint64_t(scene_->camera.resolution.y);
     SharePilot pilot;
     PlainTrail trail;

@@ -56,6 +56,8 @@ class PathTracer : public Integrator {
     void withGuidedPaths(const ProgressToken& watch, const Use& use) const;
     [[nodiscard]] GuidedContext guidedContext(const ProgressToken& watch) const;
     [[nodiscard]] PathContext plainContext(const ProgressToken& watch) const;
+    /// Factor on the odds of surfaces in view against scattering before them that a few guided paths ask for.
+    [[nodiscard]] float measureSurfaceOdds(const ProgressToken& watch) const;
     /// How many paths are plain: by a pilot, unless the scene says (darts.plain_share).
     void chooseShare(const ProgressToken& watch, Statistics& statistics);
     /// Cost of what was counted, in nanoseconds.
@@ -81,6 +83,7 @@ class PathTracer : public Integrator {
     std::optional<transport::TimeWindows> windows_; ///< that guided paths aim at
     PathGuides guides_;
     StrategyBalance balance_;
+    float surfaceOdds_ = 1.0f;   ///< of surfaces in view (GuidedContext)
     double gainOfBalance_ = 1.0; ///< variance x cost of plain paths alone over that at this balance, by the pilot
     SampleAllocation allocation_;
     bool lightsInView_ = false;                                   ///< of plain paths alone: in expectation

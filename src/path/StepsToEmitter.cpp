@@ -162,10 +162,9 @@ Ahead StepsToEmitter::aheadInMedium(PathState& path, const Medium& medium, const
     heading_ = headingOf(path.ray.direction);
     path.ray.tMax = bound(guide, heading_.h);
     const Ahead ahead{true, &medium, see(path.ray, known)};
-    if (hasDensities())
-        distances_.emplace(guideOf(path.region)
-                               .distance()
-                               .density(reachable(), heading_, ahead.reach(), darts::vec3(path.throughput)));
+    if (!hasDensities()) return ahead;
+    setSurfaceOdds(path.mediumScatters == 0 ? guided_->surfaceOdds : 1.0f);
+    distances_.emplace(guide.distance().density(reachable(), heading_, ahead.reach(), darts::vec3(path.throughput)));
     return ahead;
 }
 
@@ -198,6 +197,8 @@ Flight StepsToEmitter::flyGuided(PathState& path, const Ahead& ahead) {
     if (hasDensities()) {
         const float event = random(), choice = random();
         sample = guide.distance().sample(*distances_, ahead.reach(), event, choice);
+        if (guided_->firstFlight && path.interactions == 0)
+            *guided_->firstFlight = {distances_->surface(), sample.surface};
     } else {
         sample = sampleDistance(guide, heading_, ahead.reach(), path.throughput, random);
     }

@@ -46,6 +46,12 @@ class LightCaches;
 /// Surfaces that light may be followed to: all lobes smooth, none transmits.
 bool endsGlossySubpath(LobeMask lobes);
 
+/// The flight from the camera: the probability of its end at a surface, and whether it has ended there.
+struct FirstFlight {
+    float probability = 0.0f;
+    bool atSurface = false;
+};
+
 /// What guided paths share.
 struct GuidedContext {
     const Scene& scene;
@@ -59,6 +65,8 @@ struct GuidedContext {
     bool forwardBoundaries;                      ///< connections must look through index-matched surfaces
     const ProgressToken& watch;
     transport::StrategyBalance balance{}; ///< of guided paths beside plain ones
+    float surfaceOdds = 1.0f;             ///< TimeBudget::surfaceOdds before anything has scattered
+    FirstFlight* firstFlight = nullptr;   ///< told of in media, if not null
 };
 
 class StepsToEmitter : public transport::GuidedSteps {

@@ -25,6 +25,14 @@ double SharePilot::weighed(const Contribution& contribution, Strategy strategy, 
     return value * double(balance.weight(strategy, contribution.logRatio.weighed));
 }
 
+double SharePilot::foundByLast() const {
+    double sum = 0.0;
+    if (!paths_.empty())
+        for (size_t k = paths_.back().first; k < found_.size(); ++k)
+            sum += weighed(found_[k], paths_.back().strategy, Halves);
+    return sum;
+}
+
 double SharePilot::effective(Strategy strategy) const {
     double sum = 0.0, squares = 0.0;
     for (size_t i = 0; i < paths_.size(); ++i) {

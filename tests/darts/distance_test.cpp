@@ -78,9 +78,11 @@ TimeBudget residualOf(const DistanceCase& c) {
 }
 
 /// E[transmittance / pdf F(d)] = the integral of e^{-sigmaT d} F(d) over what is in time, and the surface's share.
-void expectUnbiased(const DistanceCase& c, const Settings& settings, bool scalar, uint64_t seed, double sigmas = 5.0) {
+void expectUnbiased(const DistanceCase& c, const Settings& settings, bool scalar, uint64_t seed, double sigmas = 5.0,
+                    float surfaceOdds = 1.0f) {
     const DistanceSampler sampler(settings, c.medium, scalar);
-    const TimeBudget budget = residualOf(c);
+    TimeBudget budget = residualOf(c);
+    budget.surfaceOdds = surfaceOdds;
     const double last = budget.latest(float(c.h)).firstLeg(), bound = std::min(last, c.surface);
     const auto shape = [&](double d) { return 1.0 + d / bound; };
     const Vec3 sigmaT = c.medium.sigmaT();
@@ -131,6 +133,17 @@ TEST(DistanceSampler, MeansMatchQuadratureForEveryTargetProposalAndCount) {
                                                     << " candidates " << candidates);
                     expectUnbiased(c, settings, false, ++seed);
                 }
+}
+
+TEST(DistanceSampler, OddsOfSurfacesChangeHowOftenTheyAreReachedAndNoMean) {
+    uint64_t seed = 1500;
+    for (const DistanceCase& c : DistanceCases)
+        for (const float odds : {0.25f, 4.0f}) expectUnbiased(c, best(Mode::Path, 0.0f), false, ++seed, 5.0, odds);
+    const DistanceSampler sampler(best(Mode::Path, 0.0f), Medium{{0, 0, 0}, {1, 1, 1}, 0.0f});
+    TimeBudget budget = TimeBudget::of({0, 0, 1}, {3.0, 3.1});
+    budget.surfaceOdds = 4.0f;
+    const float natural = std::exp(-0.8f), reached = 4 * natural / (4 * natural + 1 - natural);
+    EXPECT_NEAR(sampler.density(budget, {{}, 1.0f}, 0.8f, {1, 1, 1}).surface(), reached, 1e-6f);
 }
 
 TEST(DistanceSampler, ThePublishedSamplerAndItsSwitchesAreUnbiased) {

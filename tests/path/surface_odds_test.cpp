@@ -1,0 +1,53 @@
+// How often guided camera paths go on to surfaces in view: as what these bring asks for, and without a change of means.
+
+#include "support/PathsAndPhotons.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace tungsten::path {
+namespace {
+
+/// Fog all around, a lamp in it and a wall behind.
+std::unique_ptr<test::Rendered> beforeWall(const std::string& albedo, const std::string& darts) {
+    return test::renderPaths(R"({
+        "media": [{"name": "fog", "type": "homogeneous", "sigma_s": 0.3, "sigma_a": 0.02}],
+        "camera": {"type": "pinhole", "fov": 20, "resolution": 1, "reconstruction_filter": "box", "medium": "fog",
+                   "transform": {"position": [0, 0, -3]}},
+        "primitives": [
+            {"type": "quad", "bsdf": {"type": "lambert", "albedo": )" +
+                                 albedo + R"(}, "int_medium": "fog", "ext_medium": "fog",
+             "transform": {"position": [0, 0, 2], "scale": 20, "rotation": [-90, 0, 0]}},
+            {"type": "sphere", "emission": 40, "bsdf": {"type": "null"}, "ext_medium": "fog",
+             "transform": {"position": [2, 1, 0], "scale": 0.2}}],
+        "integrator": {"type": "path_tracer", "max_bounces": 16, "transient_time_center": 8,
+                       "transient_time_width": 1, "darts": )" +
+                                 darts + "}}",
+                             {{}, 64, 256});
+}
+
+TEST(SurfaceOdds, GrowWithWhatSurfacesBring) {
+    const auto odds = [](const std::string& albedo) {
+        const auto rendered = beforeWall(albedo, R"({"preset": "best", "plain_share": 0})");
+        return double(rendered->statistics.counter("odds of surfaces in view, in thousandths"));
+    };
+    const double bright = odds("0.9"), dark = odds("0.01");
+    EXPECT_GT(bright, 1.5 * dark);
+    EXPECT_GE(dark, 125.0);
+    EXPECT_LE(bright, 8000.0);
+}
+
+TEST(SurfaceOdds, LeaveMeansAsTheyAre) {
+    for (const char* albedo : {"0.01", "0.9"}) {
+        const auto plain = beforeWall(albedo, R"("off")");
+        for (const char* share : {"0", "0.5"}) {
+            const auto best = beforeWall(albedo, std::string(R"({"preset": "best", "plain_share": )") + share + "}");
+            EXPECT_NEAR(best->mean(), plain->mean(), 4.5 * std::hypot(best->pixelError(), plain->pixelError()))
+                << albedo << " " << share;
+        }
+    }
+}
+
+} // namespace
+} // namespace tungsten::path
