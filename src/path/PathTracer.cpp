@@ -22,8 +22,7 @@ namespace {
 constexpr size_t TileSide = 8;
 constexpr double PilotFrame = 10.0;            ///< nanoseconds for each frame of a path in that pilot
 constexpr uint32_t MostSamplePairs = 1u << 16; ///< in a pilot of samples
-constexpr double PilotPart = 0.35;             ///< of the cost of a pilot of shares: that of samples
-constexpr double WindowsPart = 0.1;            ///< of the same: a pilot of weight windows, which need few paths
+constexpr double PilotPart = 0.35;             ///< of the cost of a pilot of shares: those of samples and of windows
 constexpr double SurfaceOddsPart = 0.1;        ///< of the same: a pilot of the odds of surfaces in view
 constexpr uint32_t SamplesPerPoll = 16;
 constexpr double LightPathsPart = 0.1; ///< of a pass
@@ -292,7 +291,7 @@ WeightWindows PathTracer::learnWindows(const ProgressToken& watch, Statistics& s
     watch.stage("pilot of weight windows", transport::tuning::MostPilotPaths);
     withPlainPaths(context, [&](const auto& trace) {
         while (traced < transport::tuning::MostPilotPaths &&
-               costs(counters).sum() < WindowsPart * double(transport::tuning::MostPilotCost)) {
+               costs(counters).sum() < PilotPart * double(transport::tuning::MostPilotCost)) {
             tracePair(trace);
             watch.advance(2);
         }
