@@ -61,6 +61,12 @@ float radicalInverse(uint32_t index) {
     return float(bits >> 8) * 0x1p-24f;
 }
 
+/// Of the image, at a place in the unit square.
+Vec2i pixelAt(const Camera& camera, const Vec2f& place) {
+    const Vec2i size = camera.resolution;
+    return {std::min(int(place.x * float(size.x)), size.x - 1), std::min(int(place.y * float(size.y)), size.y - 1)};
+}
+
 } // namespace
 
 PathTracer::PathTracer(std::shared_ptr<const Scene> scene, const ObjectReader& settings)
@@ -239,6 +245,15 @@ PathContext PathTracer::plainContext(const ProgressToken& watch) const {
             lightsInView_};
 }
 
+void PathTracer::traceGuided(const GuidedContext& guided, float uWindow, float uTarget, const Ray& ray,
+                             PixelAccumulator& sink, PathCounters& counters, Sampler& sampler) const {
+    const size_t window = windows_->choose(uWindow);
+    sink.begin(balance_.both() ? Strategy::Guided : Strategy::Alone, balance_, (*windows_)[window]);
+    Sampler light = sampler.branch(RandomStream::Target, 0);
+    if (const auto target = targets_->sample(uTarget, light, guided.watch, counters))
+        traceGuidedPath(guided, sink, counters, sampler, *target, ray, window);
+}
+
 template <typename Use>
 void PathTracer::withGuidedPaths(const ProgressToken& watch, const Use& use) const {
     const GuidedContext guided = guidedContext(watch);
@@ -247,14 +262,9 @@ void PathTracer::withGuidedPaths(const ProgressToken& watch, const Use& use) con
     const auto trace = [&](const Ray& ray, PixelAccumulator& sink, StrategyCounters& counters, Sampler& sampler,
                            float u, float strategy) {
         if (!targets_->any()) return;
-        if (!(strategy < balance_.plain)) {
-            const size_t window = windows_->choose((strategy - balance_.plain) / balance_.guided);
-            sink.begin(balance_.both() ? Strategy::Guided : Strategy::Alone, balance_, (*windows_)[window]);
-            Sampler light = sampler.branch(RandomStream::Target, 0);
-            if (const auto target = targets_->sample(u, light, watch, counters.guided))
-                traceGuidedPath(guided, sink, counters.guided, sampler, *target, ray, window);
-            return;
-        }
+        if (!(strategy < balance_.plain))
+            return traceGuided(guided, (strategy - balance_.plain) / balance_.guided, u, ray, sink, counters.guided,
+                               sampler);
         ++counters.plain.plainPaths;
         sink.begin(Strategy::Plain, balance_);
         PlainTrail& trail = trails.local();
@@ -268,15 +278,13 @@ WeightWindows PathTracer::learnWindows(const ProgressToken& watch, Statistics& s
     const StageTimer timer(statistics, "pilot of weight windows");
     // Not those of the pilot of samples, which judges the windows.
     constexpr uint64_t Key = transport::PilotKey + 1;
-    const Vec2i size = scene_->camera.resolution;
     WeightWindows windows;
     PathContext context = plainContext(watch);
     StrategyCounters counters;
     Sampler places(Key, RandomStream::Pilot, 2, 0);
     uint32_t traced = 0;
     const auto tracePair = [&](const auto& trace) {
-        const Vec2i pixel{std::min(int(places.next1D() * float(size.x)), size.x - 1),
-                          std::min(int(places.next1D() * float(size.y)), size.y - 1)};
+        const Vec2i pixel = pixelAt(scene_->camera, places.next2D());
         std::array<WeightWindows::Record, 2> pair;
         for (WeightWindows::Record& record : pair) {
             Sampler sampler(Key, RandomStream::Camera, traced++, 0);
@@ -356,14 +364,12 @@ std::optional<SampleAllocation> PathTracer::improvePlainPaths(const ProgressToke
 
 bool PathTracer::seesLights(const ProgressToken& watch) const {
     const PathContext context = plainContext(watch);
-    const Vec2i size = scene_->camera.resolution;
     Film probe(1, 1, sensor_.gate.frames, {.moments = false});
     PathCounters counters;
     for (uint32_t i = 0; i < transport::tuning::MostPilotPaths && counters.inView == 0; ++i) {
         Sampler sampler(transport::PilotKey, RandomStream::Pilot, 3, i);
         const Vec2f place = sampler.next2D(), uFilter = sampler.next2D(), uLens = sampler.next2D();
-        const Vec2i pixel{std::min(int(place.x * float(size.x)), size.x - 1),
-                          std::min(int(place.y * float(size.y)), size.y - 1)};
+        const Vec2i pixel = pixelAt(scene_->camera, place);
         PixelAccumulator sink(probe, sensor_, 0, 0, 1, counters);
         const PathVisitor<true> visitor(context, sink, counters, nullptr);
         visitor.addLightsInView(PathState{.random = sampler,
@@ -448,7 +454,6 @@ PathCosts PathTracer::costs(const StrategyCounters& counters) const {
 
 float PathTracer::measureSurfaceOdds(const ProgressToken& watch) const {
     constexpr uint64_t Key = transport::PilotKey;
-    const Vec2i size = scene_->camera.resolution;
     FirstFlight first;
     GuidedContext guided = guidedContext(watch);
     guided.firstFlight = &first;
@@ -458,30 +463,29 @@ float PathTracer::measureSurfaceOdds(const ProgressToken& watch) const {
     Sampler places(Key, RandomStream::Pilot, 4, 0);
     // A path finds x. With p the probability that its first flight ends at a surface, odds k times as good make of the
     // variance, but for what does not depend on k, E[p (1 - p) (E[x^2 | surface] / k + k E[x^2 | medium])].
-    double ofSurfaces = 0.0, ofMedia = 0.0, met = 0.0;
+    double ofSurfaces = 0.0, ofMedia = 0.0, found = 0.0, met = 0.0;
     for (uint32_t i = 0; i < transport::tuning::MostPilotPaths; ++i) {
         if (i >= transport::tuning::LeastPilotPaths && met == 0.0) return 1.0f;
         if (cost(counters, tuning::Nanoseconds.guided) > SurfaceOddsPart * double(transport::tuning::MostPilotCost))
             break;
-        const Vec2i pixel{std::min(int(places.next1D() * float(size.x)), size.x - 1),
-                          std::min(int(places.next1D() * float(size.y)), size.y - 1)};
+        const Vec2i pixel = pixelAt(scene_->camera, places.next2D());
         Sampler sampler(Key, RandomStream::Pilot, 5, i);
         const Vec2f uFilter = sampler.next2D(), uLens = sampler.next2D();
         const Ray ray = scene_->camera.generateRay(pixel, uFilter, uLens);
         PixelAccumulator sink(pilot, sensor_, counters);
-        const size_t window = windows_->choose(places.next1D());
         pilot.begin(Strategy::Guided);
-        sink.begin(Strategy::Guided, balance_, (*windows_)[window]);
         first = {};
-        Sampler light = sampler.branch(RandomStream::Target, 0);
-        if (const auto target = targets_->sample(radicalInverse(i), light, watch, counters))
-            traceGuidedPath(guided, sink, counters, sampler, *target, ray, window);
-        const double found = pilot.foundByLast(), probability = double(first.probability);
+        traceGuided(guided, places.next1D(), radicalInverse(i), ray, sink, counters, sampler);
+        const auto probability = double(first.probability);
+        const double other = first.atSurface ? 1.0 - probability : probability, squares = other * pilot.squaresOfLast();
+        (first.atSurface ? ofSurfaces : ofMedia) += squares;
+        found += squares > 0.0 ? 1.0 : 0.0;
         met += probability * (1.0 - probability);
-        (first.atSurface ? ofSurfaces : ofMedia) += found * found * (first.atSurface ? 1.0 - probability : probability);
     }
-    if (pilot.effective(Strategy::Guided) < transport::tuning::LeastEffective || !(ofMedia > 0.0)) return 1.0f;
-    return std::clamp(float(std::sqrt(ofSurfaces / ofMedia)), 1.0f / tuning::MostSurfaceOdds, tuning::MostSurfaceOdds);
+    if (!(found > 0.0)) return 1.0f;
+    // Either may bring once more what a path that finds something does on average: no odds are 0, nor set by few paths.
+    const double unseen = (ofSurfaces + ofMedia) / found;
+    return float(std::sqrt((ofSurfaces + unseen) / (ofMedia + unseen)));
 }
 
 void PathTracer::chooseShare(const ProgressToken& watch, Statistics& statistics) {
@@ -530,11 +534,8 @@ void PathTracer::chooseShare(const ProgressToken& watch, Statistics& statistics)
             pilot.begin(guides ? Strategy::Guided : Strategy::Plain);
             if (guides) {
                 const double place = GoldenRatio * double(traced / 2);
-                const size_t window = windows_->choose(float(place - std::floor(place)));
-                sink.begin(Strategy::Guided, balance_, (*windows_)[window]);
-                Sampler light = sampler.branch(RandomStream::Target, 0);
-                if (const auto target = targets_->sample(radicalInverse(uint32_t(traced / 2)), light, watch, counters))
-                    traceGuidedPath(guided, sink, counters, sampler, *target, ray, window);
+                traceGuided(guided, float(place - std::floor(place)), radicalInverse(uint32_t(traced / 2)), ray, sink,
+                            counters, sampler);
             } else {
                 trail.start(guided, *targets_, sink, counted.densities, sampler);
                 tracePlainBesideGuided(plain, {&trail}, sink, counters, sampler, ray);

@@ -56,6 +56,9 @@ class PathTracer : public Integrator {
     void withGuidedPaths(const ProgressToken& watch, const Use& use) const;
     [[nodiscard]] GuidedContext guidedContext(const ProgressToken& watch) const;
     [[nodiscard]] PathContext plainContext(const ProgressToken& watch) const;
+    /// The window of time is chosen by the first number, the target by the second.
+    void traceGuided(const GuidedContext& guided, float uWindow, float uTarget, const Ray& ray, PixelAccumulator& sink,
+                     PathCounters& counters, Sampler& sampler) const;
     /// Factor on the odds of surfaces in view against scattering before them that a few guided paths ask for.
     [[nodiscard]] float measureSurfaceOdds(const ProgressToken& watch) const;
     /// How many paths are plain: by a pilot, unless the scene says (darts.plain_share).

@@ -163,7 +163,7 @@ Ahead StepsToEmitter::aheadInMedium(PathState& path, const Medium& medium, const
     path.ray.tMax = bound(guide, heading_.h);
     const Ahead ahead{true, &medium, see(path.ray, known)};
     if (!hasDensities()) return ahead;
-    setSurfaceOdds(path.mediumScatters == 0 ? guided_->surfaceOdds : 1.0f);
+    setSurfaceOdds(path.interactions == 0 ? guided_->surfaceOdds : 1.0f);
     distances_.emplace(guide.distance().density(reachable(), heading_, ahead.reach(), darts::vec3(path.throughput)));
     return ahead;
 }

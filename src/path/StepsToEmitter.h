@@ -65,7 +65,7 @@ struct GuidedContext {
     bool forwardBoundaries;                      ///< connections must look through index-matched surfaces
     const ProgressToken& watch;
     transport::StrategyBalance balance{}; ///< of guided paths beside plain ones
-    float surfaceOdds = 1.0f;             ///< TimeBudget::surfaceOdds before anything has scattered
+    float surfaceOdds = 1.0f;             ///< TimeBudget::surfaceOdds of flights from the camera
     FirstFlight* firstFlight = nullptr;   ///< told of in media, if not null
 };
 

@@ -15,8 +15,6 @@ namespace tungsten::path::tuning {
 /// Where nothing is diffuse guided directions hardly ever fall into the lobe; what they are given, a chain of glossy
 /// reflections lacks once per reflection. (Dragon: 1.7 times less variance than 0.5.) Bench: study dragon-160
 inline constexpr float GlossyAlpha = 5.0f;
-/// Factor on the odds of surfaces in view, or its inverse, at most. Bench: study gate-width
-inline constexpr float MostSurfaceOdds = 8.0f;
 
 // --- Plain and guided paths side by side -----------------------------------------------------------------------------
 

@@ -41,8 +41,8 @@ class SharePilot {
     /// What has been found so far: how many contributions, and one of them.
     [[nodiscard]] size_t contributions() const { return found_.size(); }
     [[nodiscard]] float value(size_t contribution) const { return found_[contribution].value; }
-    /// What the last path has found, weighed as if half of all paths were plain.
-    [[nodiscard]] double foundByLast() const;
+    /// Of what the last path has found in each frame, weighed as if half of all paths were plain: the sum of squares.
+    [[nodiscard]] double squaresOfLast() const;
 
     /// How many contributions of their mean would have the same spread, of all that one strategy, or both together,
     /// found.
