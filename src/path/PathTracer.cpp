@@ -547,7 +547,7 @@ void PathTracer::chooseShare(const ProgressToken& watch, Statistics& statistics)
         if (costs.sum() > double(transport::tuning::MostPilotCost)) break;
         if ((group & (group + 1)) == 0 &&
             pilot.effective(Strategy::Plain) >= 10.0 * transport::tuning::LeastEffective &&
-            pilot.effective(Strategy::Guided) >= 10.0 * transport::tuning::LeastEffective)
+            pilot.effective(Strategy::Guided) >= 10.0 * transport::tuning::LeastEffective && pilot.isSure(costs))
             break;
     }
     const auto score = [&](double plainTime) {

@@ -102,6 +102,15 @@ double SharePilot::ownSecondMoment(Strategy strategy) const {
     return paths > 0.0 ? squares / paths : 0.0;
 }
 
+bool SharePilot::isSure(const PathCosts& costs) const {
+    const auto score = [&](double time) {
+        const StrategyBalance balance = costs.ofTime(time);
+        return variance(balance) * costs.mean(balance);
+    };
+    const double ratio = score(Times.front()) / score(Times.back());
+    return ratio > tuning::SureRatio || ratio * tuning::SureRatio < 1.0;
+}
+
 double SharePilot::choose(const PathCosts& costs, const std::function<double(const StrategyBalance&)>& scoreOf) const {
     constexpr double Half = 0.5;
     if (effective(Strategy::Alone) < tuning::LeastEffective) return Half;

@@ -60,6 +60,9 @@ class SharePilot {
     [[nodiscard]] double choose(const PathCosts& costs) const {
         return choose(costs, [&](const StrategyBalance& balance) { return variance(balance) * costs.mean(balance); });
     }
+    /// Plain paths alone are surely better or worse than with the least share of the time: by more than a pilot is
+    /// likely to err.
+    [[nodiscard]] bool isSure(const PathCosts& costs) const;
     /// Chooses by another score, of which the least is best.
     [[nodiscard]] double choose(const PathCosts& costs,
                                 const std::function<double(const StrategyBalance&)>& scoreOf) const;

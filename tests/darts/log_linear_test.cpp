@@ -98,6 +98,25 @@ TEST(LogLinearDistance, SamplesFollowTheDensityWhichIntegratesToOne) {
     });
 }
 
+/// Over a free flight, up to a factor; but for the last interval, where importance falls to nothing.
+TEST(LogLinearDistance, TrustIsThePowerOfImportance) {
+    forEveryDraw([](const Drawn& drawn, Shape shape) {
+        const float sigmaT = mean(drawn.medium.sigmaT());
+        if (sigmaT * drawn.draw.bound > 100.0f) return; // logarithms as low as are kept
+        CandidateDraw half = drawn.draw;
+        half.trust = 0.5f;
+        const LogLinearDistance full = drawn.distance(shape),
+                                root(half, LogLinearDistance::logImportance(shape, drawn.medium.isGrey()));
+        const auto difference = [&](float d) {
+            return std::log(root.pdf(d)) - 0.5f * std::log(full.pdf(d)) + 0.5f * sigmaT * d;
+        };
+        for (const float d : {0.1f, 0.3f, 0.5f}) {
+            const float at = d * drawn.draw.bound;
+            EXPECT_NEAR(difference(at), difference(0.0f), 2e-4f) << at;
+        }
+    });
+}
+
 TEST(LogLinearDistance, RegistersAndSingleNodesAgree) {
     forEveryDraw([](const Drawn& drawn, Shape shape) {
         const LogLinearDistance wide = drawn.distance(shape), single = drawn.distance(shape, true);

@@ -166,6 +166,10 @@ FAULTS = [
      [("photon_tests", "Sampling/Delays.DoubleScatteringIsTheSequenceConvolved/PlainPaths")]),  # mixture of guided and own directions is not normalised
     ("src/darts/DistanceSampler.h", "return medium_ ? (1.0f - surface_) * medium_->pdf(distance) : 0.0f;", "return medium_ ? medium_->pdf(distance) : 0.0f;",
      [("darts_tests", "DistanceSampler.MeansMatchQuadratureByDensitiesThatAreKnown")]),  # light from media before surfaces is too dark by the chance of the medium event
+    ("src/darts/DistanceSampler.cpp", "- (1.0f - draw.trust) * sigmaT * at[i];", ";",
+     [("darts_tests", "LogLinearDistance.TrustIsThePowerOfImportance")]),  # flights out of bodies are too long, by transmittance to the power of trust
+    ("src/transport/SharePilot.cpp", "ratio > tuning::SureRatio ||", "ratio > 0.0 ||",
+     [("path_tests", "SharePilot.IsSureWhereOneChoiceIsMuchBetter")]),  # pilots choose as soon as they may, by luck
     ("src/darts/DistanceSampler.cpp", "(1.0f / density.surface()), density.surface()};", "(1.0f / density.surface()), 1.0f};",
      [("darts_tests", "DistanceSampler.DrawsKnowTheirDensity")]),  # surfaces are reached with no density, and weigh infinitely
     ("src/darts/DistanceSampler.cpp", "draw.falls = shape != Shape::TimeBound || draw.overlap;", ";",
