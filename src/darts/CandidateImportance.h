@@ -24,8 +24,7 @@ struct CandidateDraw {
     float probability = 1; ///< of the medium event
     Proposals proposals = Proposals::Exponential;
     bool overlap = false;
-    float trust =
-        1; ///< power of importance over that of a free flight, by which distances of a known density are drawn
+    float power = 1; ///< of importance over a free flight's, where the density is known
     Vec3 throughput;
     const Medium* medium = nullptr;
     const EscapeGeometry* escape = nullptr; ///< of Shape::FirstPassage

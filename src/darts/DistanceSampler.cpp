@@ -20,12 +20,11 @@ constexpr float FallToBound = 0.7f;
 constexpr float LeastLog = -57.5f;
 /// Least part of all mass that the uniform numbers of a draw can resolve.
 constexpr float LeastMass = 0x1p-24f;
-/// CandidateDraw::trust out of bodies. Diffusion errs within a mean free path of the boundary and about other faces,
-/// and a walk multiplies the errors of hundreds of flights: by its square root their weights vary half as much.
-/// (Variance x CPU over that at 1, 3 seeds, at 0.5 and 0.7: dense cubes 10, 60, 300 0.92 and 0.74, 0.91 and 0.96, 0.57
-/// and 0.95, cloud in haze 0.08 and 0.8, layered tissue 1.3 and 1.4 within twice of either. Half of the distances free
-/// flights: 0.72, 0.89, 0.47, 1.5, 1.2, and 5 for a cube of sigma_s 100, g 0.8.) Bench: study bodies
-constexpr float TrustOutside = 0.5f;
+/// CandidateDraw::power out of bodies. Diffusion errs within a mean free path of the boundary and about other faces,
+/// and a walk multiplies the errors of hundreds of flights: by the square root the logarithm of its weight varies half
+/// as much. (Variance x CPU of best paths over that at 1, 3 seeds, at 0.5 and 0.7: dense cubes 10, 60, 300 0.92 and
+/// 0.74, 0.91 and 0.96, 0.57 and 0.95, layered tissue 1.3 and 1.4 within twice of either.) Bench: study bodies
+constexpr float PowerOutside = 0.5f;
 
 template <typename Batch, Shape G, int Channels>
 void logImportanceOf(const CandidateDraw& draw, const float* distances, float* logs) {
@@ -101,7 +100,7 @@ LogLinearDistance::LogLinearDistance(const CandidateDraw& draw, LogImportance im
     if (near) add(end * (1.0f - std::sqrt(left / float(Nodes))));
     if (!endsInTime) add(end);
     importance(draw, at.data(), log.data());
-    for (size_t i = 0; i < Nodes; ++i) log[i] = draw.trust * log[i] - (1.0f - draw.trust) * sigmaT * at[i];
+    for (size_t i = 0; i < Nodes; ++i) log[i] = draw.power * log[i] - (1.0f - draw.power) * sigmaT * at[i];
     intervals_ = endsInTime ? Nodes : Nodes - 1;
     const float top = *std::max_element(log.begin(), log.end());
     std::array<float, Nodes + 1> values;
@@ -253,7 +252,7 @@ DistanceDensity DistanceSampler::density(const TimeBudget& budget, const Heading
     CandidateDraw draw = drawOf(budget, ray, latest, bound, throughput);
     if (budget.low > 0) draw.kink = Ellipse<float>{budget.C, budget.low, ray.h}.firstLeg();
     const Shape shape = shapeFor(budget);
-    if (shape == Shape::FirstPassage) draw.trust = TrustOutside;
+    if (shape == Shape::FirstPassage) draw.power = PowerOutside;
     draw.falls = shape != Shape::TimeBound || draw.overlap;
     return {event.probability, draw, importance_[size_t(shape)]};
 }

@@ -52,16 +52,17 @@ double SharePilot::effective(Strategy strategy) const {
 /// where c' are those at the shares in question, since pairs on one way are found as densely as the longer path. What
 /// guided paths find beside their way they find in pairs alone; pairs of plain paths alone are those that these find.
 /// Less the squares of means, by independent halves.
-auto SharePilot::moments(const StrategyBalance& balance) const -> Moments {
+auto SharePilot::momentsByPixel(const StrategyBalance& balance) const -> std::vector<Moments> {
     struct Before {
         double onWay = 0.0, aside = 0.0; ///< of what the path has found in this frame
     };
     std::unordered_map<int, Before> before;
     std::unordered_map<int, std::array<double, 2>> halves;
-    double seconds = 0.0, squaredMeans = 0.0;
+    std::vector<Moments> moments(paths_.size() / PathsOfPixel);
     const double guidedFactor = double(balance.guided) / double(Halves.guided);
-    for (size_t i = 0; i < paths_.size(); ++i) {
+    for (size_t i = 0; i < moments.size() * PathsOfPixel; ++i) {
         const Strategy strategy = paths_[i].strategy;
+        Moments& pixel = moments[i / PathsOfPixel];
         before.clear();
         if (i % PathsOfPixel == 0) halves.clear();
         for (size_t k = paths_[i].first; k < end(i); ++k) {
@@ -70,7 +71,7 @@ auto SharePilot::moments(const StrategyBalance& balance) const -> Moments {
             const double inPairs = balance.guided > 0.0f         ? here
                                    : strategy == Strategy::Plain ? there / double(Halves.plain)
                                                                  : 0.0;
-            seconds += here * there + 2.0 * inPairs * frame.onWay + 2.0 * there * frame.aside;
+            pixel.second += here * there + 2.0 * inPairs * frame.onWay + 2.0 * there * frame.aside;
             if (found_[k].found == Found::OnWay)
                 frame.onWay += there;
             else
@@ -78,10 +79,20 @@ auto SharePilot::moments(const StrategyBalance& balance) const -> Moments {
             halves[found_[k].frame][(i % PathsOfPixel) / 2] += 0.5 * here;
         }
         if (i % PathsOfPixel == PathsOfPixel - 1)
-            for (const auto& [frame, half] : halves) squaredMeans += half[0] * half[1] * double(PathsOfPixel);
+            for (const auto& [frame, half] : halves) pixel.squaredMean += half[0] * half[1] * double(PathsOfPixel);
     }
-    const double paths = std::max(double(paths_.size()), 1.0);
-    return {seconds / paths, squaredMeans / paths};
+    return moments;
+}
+
+auto SharePilot::moments(const StrategyBalance& balance) const -> Moments {
+    Moments mean{};
+    const std::vector<Moments> pixels = momentsByPixel(balance);
+    const double paths = std::max(double(pixels.size() * PathsOfPixel), 1.0);
+    for (const Moments& pixel : pixels) {
+        mean.second += pixel.second / paths;
+        mean.squaredMean += pixel.squaredMean / paths;
+    }
+    return mean;
 }
 
 double SharePilot::variance(const StrategyBalance& balance) const {
@@ -103,12 +114,18 @@ double SharePilot::ownSecondMoment(Strategy strategy) const {
 }
 
 bool SharePilot::isSure(const PathCosts& costs) const {
-    const auto score = [&](double time) {
-        const StrategyBalance balance = costs.ofTime(time);
-        return variance(balance) * costs.mean(balance);
-    };
-    const double ratio = score(Times.front()) / score(Times.back());
-    return ratio > tuning::SureRatio || ratio * tuning::SureRatio < 1.0;
+    constexpr double Errors = 2.0;
+    const auto times = [&](double time) { return costs.ofTime(time); };
+    const StrategyBalance most = times(Times.front()), least = times(Times.back());
+    const std::vector<Moments> ofMost = momentsByPixel(most), ofLeast = momentsByPixel(least);
+    double sum = 0.0, squares = 0.0;
+    for (size_t i = 0; i < ofMost.size(); ++i) {
+        const double difference = (ofMost[i].second - ofMost[i].squaredMean) * costs.mean(most) -
+                                  (ofLeast[i].second - ofLeast[i].squaredMean) * costs.mean(least);
+        sum += difference;
+        squares += difference * difference;
+    }
+    return sum * sum > Errors * Errors * (squares - sum * sum / double(ofMost.size()));
 }
 
 double SharePilot::choose(const PathCosts& costs, const std::function<double(const StrategyBalance&)>& scoreOf) const {

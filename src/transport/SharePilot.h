@@ -60,8 +60,8 @@ class SharePilot {
     [[nodiscard]] double choose(const PathCosts& costs) const {
         return choose(costs, [&](const StrategyBalance& balance) { return variance(balance) * costs.mean(balance); });
     }
-    /// Plain paths alone are surely better or worse than with the least share of the time: by more than a pilot is
-    /// likely to err.
+    /// Plain paths alone are better or worse than with the least share of the time by two standard errors of variance x
+    /// cost, pixel by pixel.
     [[nodiscard]] bool isSure(const PathCosts& costs) const;
     /// Chooses by another score, of which the least is best.
     [[nodiscard]] double choose(const PathCosts& costs,
@@ -85,9 +85,11 @@ class SharePilot {
         return path + 1 < paths_.size() ? paths_[path + 1].first : found_.size();
     }
     struct Moments {
-        double second, squaredMean;
+        double second = 0.0, squaredMean = 0.0;
     };
     [[nodiscard]] Moments moments(const StrategyBalance& balance) const;
+    /// Sums over the paths of each group.
+    [[nodiscard]] std::vector<Moments> momentsByPixel(const StrategyBalance& balance) const;
     /// At the balance; of plain paths alone, what they would bring in the contribution's place.
     [[nodiscard]] double weighed(const Contribution& contribution, Strategy strategy,
                                  const StrategyBalance& balance) const;

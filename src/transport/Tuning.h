@@ -41,10 +41,8 @@ inline constexpr double WindowGrowth = 1.5;
 /// choose; less than this share only where plain paths have found as many themselves. (Without the second a pilot of
 /// 10 ms loses up to 11 times, with it 2.7.)
 inline constexpr double LeastEffective = 20.0, LeastUnjudged = 0.2;
-/// Paths of a pilot, and its counted cost in nanoseconds. It ends before where LeastEffective has been found ten times,
-/// and plain paths alone are that much better or worse than with a tenth of the time: by 8192 paths of 27-balls that
-/// ratio is wrong by 1.4 mostly, and by 2.5 once in seven keys.
-inline constexpr double SureRatio = 2.0;
+/// Paths of a pilot, which ends where LeastEffective has been found ten times and the choice is sure
+/// (SharePilot::isSure), and its counted cost in nanoseconds.
 inline constexpr uint64_t LeastPilotPaths = 256, MostPilotPaths = 1 << 15, MostPilotCost = 100'000'000;
 
 } // namespace tungsten::transport::tuning

@@ -56,7 +56,9 @@ void forEveryDraw(const Use& use) {
                         if (surface < 1.0f && kink > 0.6f) continue; // beyond the bound
                         SCOPED_TRACE(testing::Message() << "shape " << int(shape) << " grey " << grey << " depth "
                                                         << depth << " surface " << surface << " kink " << kink);
-                        use(Drawn(grey, depth, surface, kink), shape);
+                        Drawn drawn(grey, depth, surface, kink);
+                        drawn.draw.power = shape == Shape::FirstPassage ? 0.5f : 1.0f;
+                        use(drawn, shape);
                     }
 }
 
@@ -99,14 +101,16 @@ TEST(LogLinearDistance, SamplesFollowTheDensityWhichIntegratesToOne) {
 }
 
 /// Over a free flight, up to a factor; but for the last interval, where importance falls to nothing.
-TEST(LogLinearDistance, TrustIsThePowerOfImportance) {
+TEST(LogLinearDistance, FollowsAPowerOfImportance) {
     forEveryDraw([](const Drawn& drawn, Shape shape) {
         const float sigmaT = mean(drawn.medium.sigmaT());
         if (sigmaT * drawn.draw.bound > 100.0f) return; // logarithms as low as are kept
-        CandidateDraw half = drawn.draw;
-        half.trust = 0.5f;
-        const LogLinearDistance full = drawn.distance(shape),
-                                root(half, LogLinearDistance::logImportance(shape, drawn.medium.isGrey()));
+        const auto importance = LogLinearDistance::logImportance(shape, drawn.medium.isGrey());
+        CandidateDraw draw = drawn.draw;
+        draw.power = 1.0f;
+        const LogLinearDistance full(draw, importance);
+        draw.power = 0.5f;
+        const LogLinearDistance root(draw, importance);
         const auto difference = [&](float d) {
             return std::log(root.pdf(d)) - 0.5f * std::log(full.pdf(d)) + 0.5f * sigmaT * d;
         };

@@ -166,9 +166,9 @@ FAULTS = [
      [("photon_tests", "Sampling/Delays.DoubleScatteringIsTheSequenceConvolved/PlainPaths")]),  # mixture of guided and own directions is not normalised
     ("src/darts/DistanceSampler.h", "return medium_ ? (1.0f - surface_) * medium_->pdf(distance) : 0.0f;", "return medium_ ? medium_->pdf(distance) : 0.0f;",
      [("darts_tests", "DistanceSampler.MeansMatchQuadratureByDensitiesThatAreKnown")]),  # light from media before surfaces is too dark by the chance of the medium event
-    ("src/darts/DistanceSampler.cpp", "- (1.0f - draw.trust) * sigmaT * at[i];", ";",
-     [("darts_tests", "LogLinearDistance.TrustIsThePowerOfImportance")]),  # flights out of bodies are too long, by transmittance to the power of trust
-    ("src/transport/SharePilot.cpp", "ratio > tuning::SureRatio ||", "ratio > 0.0 ||",
+    ("src/darts/DistanceSampler.cpp", "- (1.0f - draw.power) * sigmaT * at[i];", ";",
+     [("darts_tests", "LogLinearDistance.FollowsAPowerOfImportance")]),  # flights out of bodies are too long, by the root of transmittance
+    ("src/transport/SharePilot.cpp", "> Errors * Errors * (squares", "> 0.0 * Errors * (squares",
      [("path_tests", "SharePilot.IsSureWhereOneChoiceIsMuchBetter")]),  # pilots choose as soon as they may, by luck
     ("src/darts/DistanceSampler.cpp", "(1.0f / density.surface()), density.surface()};", "(1.0f / density.surface()), 1.0f};",
      [("darts_tests", "DistanceSampler.DrawsKnowTheirDensity")]),  # surfaces are reached with no density, and weigh infinitely
@@ -334,7 +334,7 @@ FAULTS = [
      [("path_tests", "PlainTrail.*")]),  # guided flights are twice as dense as they are
     ("src/path/PlainTrail.cpp", "guided.logRatio += std::log(steps.expectedCopies(guided, vertex));", ";",
      [("path_tests", "PlainTrail.*")]),  # plain paths' densities forget roulette and splits
-    ("src/transport/SharePilot.cpp", "squaredMeans += half[0] * half[1] * double(PathsOfPixel);", ";",
+    ("src/transport/SharePilot.cpp", "pixel.squaredMean += half[0] * half[1] * double(PathsOfPixel);", ";",
      [("path_tests", "SharePilot.*")]),  # the pilot takes second moments for variances
     ("src/darts/ControlVertex.h", "return Real(0.5) * (lengths.pdf(offset) + a /", "return (lengths.pdf(offset) + a /",
      [("darts_tests", "LengthAlong.SamplesFollowTheDensity")]),  # connections along a way are twice as dense as they are

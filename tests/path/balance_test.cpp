@@ -72,7 +72,8 @@ TEST(SharePilot, IsSureWhereOneChoiceIsMuchBetter) {
     const PathCosts costs{1.0, 0.3, 5.0};
     EXPECT_TRUE(pilotOf(0.3, 0.25, 4000).isSure(costs)) << "guides are of no use";
     EXPECT_TRUE(pilotOf(0.02, 0.6, 4000).isSure(costs)) << "guides find nearly everything";
-    EXPECT_FALSE(pilotOf(0.02, 0.1, 4000).isSure(costs)) << "what guides find better they cost more";
+    EXPECT_FALSE(pilotOf(0.02, 0.1, 100).isSure(costs)) << "what guides find better they cost more";
+    EXPECT_FALSE(SharePilot().isSure(costs));
 }
 
 /// Fog between a floor and a wall, under a lamp.
