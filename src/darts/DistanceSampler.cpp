@@ -75,6 +75,8 @@ LogLinearDistance::LogImportance LogLinearDistance::logImportance(Shape shape, b
 }
 
 LogLinearDistance::LogLinearDistance(const CandidateDraw& draw, LogImportance importance) {
+    using Register = RegisterOf<Nodes>;
+    const auto numbers = lanes::get<Register>(lanes::Count.values.data());
     const float end = draw.bound;
     // A surface ends what is in time; else importance falls to nothing there.
     const bool endsInTime = !(end < draw.firstLeg);
@@ -89,8 +91,9 @@ LogLinearDistance::LogLinearDistance(const CandidateDraw& draw, LogImportance im
     const float sigmaT = mean(draw.medium->sigmaT()), gone = -fastExpm1(-sigmaT * end);
     // In thin media the quantiles of both are the same: those of the uniform distance fill the places between.
     const bool thin = sigmaT * end < 0.3f;
-    for (int j = 1; j <= 3; ++j)
-        add(thin ? end * (float(j) - 0.5f) / 4.0f : std::min(-fastLog1p(-gone * (float(j) / 4.0f)) / sigmaT, end));
+    alignas(64) std::array<float, Nodes> quantiles;
+    lanes::put(quantiles.data(), lanes::log(max(1.0f - gone * 0.25f * numbers, Register(0.25f))));
+    for (size_t j = 1; j <= 3; ++j) add(thin ? end * (float(j) - 0.5f) / 4.0f : std::min(-quantiles[j] / sigmaT, end));
     const float kink = draw.kink > 1e-6f * end && draw.kink < end * (1.0f - 1e-6f) ? draw.kink : 0.95f * end;
     add(kink);
     const float left = 1.0f - kink / end;
@@ -100,28 +103,23 @@ LogLinearDistance::LogLinearDistance(const CandidateDraw& draw, LogImportance im
     if (near) add(end * (1.0f - std::sqrt(left / float(Nodes))));
     if (!endsInTime) add(end);
     importance(draw, at.data(), log.data());
-    for (size_t i = 0; i < Nodes; ++i) log[i] = draw.power * log[i] - (1.0f - draw.power) * sigmaT * at[i];
     intervals_ = endsInTime ? Nodes : Nodes - 1;
-    const float top = *std::max_element(log.begin(), log.end());
-    std::array<float, Nodes + 1> values;
-    const float least = smallest(draw.medium->sigmaT());
-    for (size_t i = 0; i < Nodes; ++i) {
-        nodes_[i] = at[i];
-        logs_[i] = std::max(log[i] - top, std::min(LeastLog, -least * at[i]));
-        values[i] = std::exp(logs_[i]);
-    }
+    const Register here = lanes::get<Register>(at.data());
+    const Register powers = draw.power * lanes::get<Register>(log.data()) - ((1.0f - draw.power) * sigmaT) * here;
+    const Register least = min(Register(LeastLog), -smallest(draw.medium->sigmaT()) * here);
+    lanes::put(nodes_.data(), here);
+    lanes::put(logs_.data(), Register(max(powers - lanes::most(powers), least)));
     nodes_[Nodes] = end;
     logs_[Nodes] = logs_[Nodes - 1] - (draw.falls ? FallToBound : sigmaT * (end - at[Nodes - 1]));
-    values[Nodes] = std::exp(logs_[Nodes]);
-    for (int i = 0; i < intervals_; ++i) {
-        const auto k = size_t(i);
-        const float here = values[k], next = values[k + 1], rise = slope(i);
-        const float mean = std::abs(rise) < 0.05f
-                               ? here * (1.0f + rise * (0.5f + rise * (1.0f / 6.0f + rise * (1.0f / 24.0f))))
-                               : (next - here) / rise;
-        masses_[k] = (nodes_[k + 1] - nodes_[k]) * mean;
-        sum_ += masses_[k];
-    }
+    // Behind a surface the last interval has no width.
+    const Register logs = lanes::get<Register>(logs_.data()), nextLogs = Register::load_unaligned(&logs_[1]);
+    const Register value = lanes::exp(logs), next = lanes::exp(nextLogs), rise = nextLogs - logs;
+    const Register series =
+        1.0f + rise * (1.0f / 2 + rise * (1.0f / 6 + rise * (1.0f / 24 + rise * (1.0f / 120 + rise * (1.0f / 720)))));
+    const Register means = select(abs(rise) < 0.3f, Register(value * series), Register((next - value) / rise));
+    const Register masses = (Register::load_unaligned(&nodes_[1]) - here) * means;
+    lanes::put(masses_.data(), masses);
+    sum_ = lanes::sum(masses);
 }
 
 float LogLinearDistance::sample(float u) const {

@@ -36,9 +36,9 @@ class LogLinearDistance {
   private:
     [[nodiscard]] float slope(int i) const { return logs_[size_t(i) + 1] - logs_[size_t(i)]; }
 
-    std::array<float, Nodes + 1> nodes_; ///< ascending, from 0 to the bound
-    std::array<float, Nodes + 1> logs_;  ///< of importance, the highest at 0
-    std::array<float, Nodes> masses_;    ///< of the intervals
+    alignas(64) std::array<float, Nodes + 1> nodes_; ///< ascending, from 0 to the bound
+    alignas(64) std::array<float, Nodes + 1> logs_;  ///< of importance, the highest at 0
+    alignas(64) std::array<float, Nodes> masses_;    ///< of the intervals
     int intervals_;
     float sum_ = 0.0f;
 };
