@@ -183,6 +183,10 @@ AboutTarget(Lobe, Vec3) -> AboutTarget<Lobe>; // Clang before 17 does not deduce
 /// pdf(direction) per solid angle (a phase function, an emitter's or a surface's distribution).
 class DirectionSampler {
   public:
+    /// Least Settings::alpha where the lobe is a rougher guess: boundaries of unknown kind lie between, or a surface
+    /// scatters, whose cosine it does not know. Bench: study bodies and scattering, paths
+    static constexpr float RoughAlpha = 0.5f;
+
     /// Direction::Eda uses `table`; without one that of the medium's mean albedo and g, built here unless another
     /// sampler in the process holds it already.
     DirectionSampler(const Settings& settings, const Medium& medium, std::shared_ptr<const EdaTable> table = nullptr)
@@ -247,15 +251,13 @@ class DirectionSampler {
     [[nodiscard]] float guideShare(const TimeBudget& budget, float excess) const {
         const float ratio = budget.C / (budget.C + excess);
         const float alpha =
-            budget.model == EscapeModel::Infinite ? settings_.alpha : std::max(settings_.alpha, LeastAlphaOutside);
+            budget.model == EscapeModel::Infinite ? settings_.alpha : std::max(settings_.alpha, RoughAlpha);
         return ratio > 0 ? ratio / (ratio + alpha) : 0.0f;
     }
 
   private:
     static constexpr int MostDirections = 8;
     static constexpr float TurnsShare = 0.5f; ///< of ConvolvedPhaseLobe, the rest the scatterer's own
-    /// Where boundaries of unknown kind lie between, the lobe is a rougher guess. (Bench: study bodies, paths.)
-    static constexpr float LeastAlphaOutside = 0.5f;
     /// Behind refraction light leaves in more directions than the guide knows; phase functions do better alone. (Bench:
     /// study bodies, milk behind glass, beams: MSE x CPU 1.6, with a guided share of 0.3 3.3, of 0.8 7.7.)
     [[nodiscard]] static bool isBehindRefraction(const TimeBudget& budget) {

@@ -18,8 +18,12 @@ PathGuides PathGuides::of(const Scene& scene, const transport::Policy& policy, c
         if (!medium.scatters() || facts.isExcluded(i)) settings.direction = darts::Direction::Phase;
         const darts::Medium coefficients{darts::vec3(medium.sigmaA()), darts::vec3(medium.sigmaS()), medium.phase.g()};
         guides.media.emplace_back(settings, coefficients);
-        darts::Settings glossy = settings;
-        if (!policy.sampling.published) glossy.alpha = std::max(glossy.alpha, tuning::GlossyAlpha);
+        darts::Settings diffuse = settings, glossy = settings;
+        if (!policy.sampling.published) {
+            diffuse.alpha = std::max(diffuse.alpha, darts::DirectionSampler::RoughAlpha);
+            glossy.alpha = std::max(glossy.alpha, tuning::GlossyAlpha);
+        }
+        guides.diffuse.emplace_back(diffuse, coefficients);
         guides.glossy.emplace_back(glossy, coefficients);
     }
     return guides;
@@ -62,7 +66,7 @@ const darts::Guide* StepsToEmitter::guideFor(const transport::Vertex& vertex, co
     const Medium* medium = context_.scene.medium(ahead);
     if (!medium || !medium->scatters()) return nullptr;
     const bool diffuse = (vertex.lobes() & lobe::DiffuseReflection) != 0;
-    const auto& guides = diffuse ? guided_->guides.media : guided_->guides.glossy;
+    const auto& guides = diffuse ? guided_->guides.diffuse : guided_->guides.glossy;
     const darts::Guide& guide = guides[size_t(ahead.medium)];
     return guide.settings().direction == darts::Direction::Phase ? nullptr : &guide;
 }
@@ -162,8 +166,8 @@ Ahead StepsToEmitter::aheadInMedium(PathState& path, const Medium& medium, const
     heading_ = headingOf(path.ray.direction);
     path.ray.tMax = bound(guide, heading_.h);
     const Ahead ahead{true, &medium, see(path.ray, known)};
-    if (!hasDensities()) return ahead;
     setSurfaceOdds(path.interactions == 0 ? guided_->surfaceOdds : 1.0f);
+    if (!hasDensities()) return ahead;
     distances_.emplace(guide.distance().density(reachable(), heading_, ahead.reach(), darts::vec3(path.throughput)));
     return ahead;
 }

@@ -29,13 +29,18 @@ std::unique_ptr<test::Rendered> beforeWall(const std::string& albedo, const std:
 }
 
 TEST(SurfaceOdds, GrowWithWhatSurfacesBring) {
-    const auto odds = [](const std::string& albedo) {
-        const auto rendered = beforeWall(albedo, R"({"preset": "best", "plain_share": 0})");
-        return double(rendered->statistics.counter("odds of surfaces in view, in thousandths"));
+    struct Measured {
+        double odds, visits;
     };
-    const double bright = odds("0.9"), dark = odds("0.01");
-    EXPECT_GT(bright, 1.5 * dark);
-    EXPECT_GT(dark, 0.0);
+    const auto measured = [](const std::string& albedo) -> Measured {
+        const auto rendered = beforeWall(albedo, R"({"preset": "best", "plain_share": 0})");
+        const auto count = [&](const char* counter) { return double(rendered->statistics.counter(counter)); };
+        return {count("odds of surfaces in view, in thousandths"), count("surface events") / count("camera paths")};
+    };
+    const Measured bright = measured("0.9"), dark = measured("0.01");
+    EXPECT_GT(bright.odds, 1.5 * dark.odds);
+    EXPECT_GT(dark.odds, 0.0);
+    EXPECT_GT(bright.visits, 1.5 * dark.visits) << "without plain paths beside them guided ones have the same odds";
 }
 
 TEST(SurfaceOdds, LeaveMeansAsTheyAre) {
