@@ -84,6 +84,7 @@ void PathTracer::plan(SceneFacts& facts, Features& features) const {
 
 void PathTracer::prepare(const SceneFacts& facts, const ProgressToken& watch, Statistics& statistics) {
     plan_ = PathPlan::of(*scene_, settings_, facts);
+    looksThrough_ = plan_.indexMatched; // what pilots count does not depend on what else is looked for
     bound_.emplace(*scene_, facts);
     lights_.emplace(*scene_, facts.excludedEmitters);
     using Emitters = TargetChoice::Emitters;
@@ -97,6 +98,7 @@ void PathTracer::prepare(const SceneFacts& facts, const ProgressToken& watch, St
     }
     if (plan_.guidance.on) prepareGuides(facts, watch, statistics);
     if (plan_.allocation.on || plan_.weightWindows.on || plan_.lightsInView.on) allocateSamples(watch, statistics);
+    looksThrough_ = plan_.forwardBoundaries;
     if (plan_.balance.on)
         statistics.add("plain camera paths, in thousandths", uint64_t(std::lround(1000.0 * double(balance_.plain))));
 }
@@ -218,18 +220,8 @@ void PathTracer::tracePlain(const PathContext& context, const Ray& ray, PixelAcc
 }
 
 GuidedContext PathTracer::guidedContext(const ProgressToken& watch) const {
-    return {*scene_,
-            settings_,
-            sensor_,
-            *windows_,
-            guides_,
-            lightCaches_,
-            *bound_,
-            escapeModels_.get(),
-            plan_.forwardBoundaries,
-            watch,
-            balance_,
-            surfaceOdds_};
+    return {*scene_, settings_,           sensor_,       *windows_, guides_,  lightCaches_,
+            *bound_, escapeModels_.get(), looksThrough_, watch,     balance_, surfaceOdds_};
 }
 
 PathContext PathTracer::plainContext(const ProgressToken& watch) const {
@@ -238,7 +230,7 @@ PathContext PathTracer::plainContext(const ProgressToken& watch) const {
             *lights_,
             *bound_,
             refracted_ ? &*refracted_ : nullptr,
-            plan_.forwardBoundaries,
+            looksThrough_,
             watch,
             weightWindows_.any() ? &weightWindows_ : nullptr,
             nullptr,
@@ -457,7 +449,6 @@ float PathTracer::measureSurfaceOdds(const ProgressToken& watch) const {
     FirstFlight first;
     GuidedContext guided = guidedContext(watch);
     guided.firstFlight = &first;
-    guided.forwardBoundaries = plan_.indexMatched; // what is counted must not differ otherwise
     PathCounters counters;
     SharePilot pilot;
     Sampler places(Key, RandomStream::Pilot, 4, 0);
@@ -511,10 +502,8 @@ void PathTracer::chooseShare(const ProgressToken& watch, Statistics& statistics)
         balance_ = {0.0f, 1.0f};
         return;
     }
-    GuidedContext guided = guidedContext(watch);
-    PathContext plain = plainContext(watch);
-    guided.forwardBoundaries = plain.forwardBoundaries =
-        plan_.indexMatched; // what is counted must not differ otherwise
+    const GuidedContext guided = guidedContext(watch);
+    const PathContext plain = plainContext(watch);
     const auto width = uint64_t(scene_->camera.resolution.x), pixels = width * uint64_t(scene_->camera.resolution.y);
     SharePilot pilot;
     PlainTrail trail;

@@ -86,6 +86,7 @@ class PathTracer : public Integrator {
     std::optional<transport::TimeWindows> windows_; ///< that guided paths aim at
     PathGuides guides_;
     StrategyBalance balance_;
+    bool looksThrough_ = false;  ///< connections look through index-matched surfaces
     float surfaceOdds_ = 1.0f;   ///< of surfaces in view (GuidedContext)
     double gainOfBalance_ = 1.0; ///< variance x cost of plain paths alone over that at this balance, by the pilot
     SampleAllocation allocation_;

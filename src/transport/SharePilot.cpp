@@ -131,11 +131,10 @@ bool SharePilot::isSure(const PathCosts& costs) const {
 double SharePilot::choose(const PathCosts& costs, const std::function<double(const StrategyBalance&)>& scoreOf) const {
     constexpr double Half = 0.5;
     if (effective(Strategy::Alone) < tuning::LeastEffective) return Half;
-    const bool plainIsJudged = effective(Strategy::Plain) >= tuning::LeastEffective;
     const auto score = [&](double time) { return scoreOf(costs.ofTime(time)); };
     double best = Half, least = score(Half);
     for (const double time : Times) {
-        if (time == Half || (time < tuning::LeastUnjudged && !plainIsJudged)) continue;
+        if (time == Half) continue;
         if (const double other = score(time); other < least) {
             least = other;
             best = time;

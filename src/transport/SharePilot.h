@@ -55,8 +55,8 @@ class SharePilot {
     /// E[squares of what a path of the strategy finds in a frame], by its own estimate and its own paths.
     [[nodiscard]] double ownSecondMoment(Strategy strategy) const;
 
-    /// The share of time with the least variance x cost, unless too little has been found to tell. One half is safe;
-    /// less is only given to plain paths where they have found enough to be judged.
+    /// The share of time with the least variance x cost; one half, unless enough has been found to tell. What plain
+    /// paths have not found counts by what they would bring in the place of guided ones.
     [[nodiscard]] double choose(const PathCosts& costs) const {
         return choose(costs, [&](const StrategyBalance& balance) { return variance(balance) * costs.mean(balance); });
     }

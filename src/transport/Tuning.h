@@ -38,9 +38,8 @@ inline constexpr double WindowGrowth = 1.5;
 // --- Plain and guided paths side by side -----------------------------------------------------------------------------
 
 /// Contributions of a pilot of plain and guided paths, as many of one size as are worth them, by which a pilot may
-/// choose; less than this share only where plain paths have found as many themselves. (Without the second a pilot of
-/// 10 ms loses up to 11 times, with it 2.7.)
-inline constexpr double LeastEffective = 20.0, LeastUnjudged = 0.2;
+/// choose.
+inline constexpr double LeastEffective = 20.0;
 /// Paths of a pilot, which ends where LeastEffective has been found ten times and the choice is sure
 /// (SharePilot::isSure), and its counted cost in nanoseconds.
 inline constexpr uint64_t LeastPilotPaths = 256, MostPilotPaths = 1 << 15, MostPilotCost = 100'000'000;
