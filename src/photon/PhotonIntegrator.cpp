@@ -83,8 +83,6 @@ void PhotonIntegrator::chooseShare(const ProgressToken& watch, Statistics& stati
             *scene_, sensor, *seen, pass, ConnectionBlur::of(settings_.gatherRadius, 1.0f), forwardBoundaries_);
     }
     photonPass_->chooseShare(watch, connections.get(), seen ? &*seen : nullptr, statistics);
-    // Folded rays take long beside plain light paths.
-    if (plan_.indirectView && photonPass_->plainAlone()) plan_.cameraPaths = 1;
 }
 
 double PhotonIntegrator::memoryBytes() const {

@@ -146,17 +146,16 @@ uint32_t affordedCameraPaths(const Given& given) {
     const Vec2i& resolution = given.scene.camera.resolution;
     const uint64_t pixels = uint64_t(resolution.x) * uint64_t(resolution.y);
     const uint64_t paths = std::min<uint64_t>(tuning::CameraPaths, given.settings.volumePhotonCount);
-    return uint32_t(std::clamp<uint64_t>(paths / pixels, 1, tuning::MostCameraPaths));
+    const bool slices = given.ofPrimitive([](const auto& p) { return p.LimitsRecords; });
+    return uint32_t(std::clamp<uint64_t>(paths / pixels, 1, slices ? tuning::MostWithSlices : tuning::MostCameraPaths));
 }
 
 Decision extraCameraPathsOf(const Given& given, const PhotonPlan& plan, uint32_t paths) {
-    if (!plan.guidance.on) return plan.guidance;
-    const bool on = paths > 1 && !given.policy().sampling.published && !plan.glossyPaths.on &&
-                    given.ofPrimitive([](const auto& p) { return p.SplatsOften; });
+    const bool on = paths > 1 && given.policy().guides() && !given.policy().sampling.published && !plan.glossyPaths.on;
     return {on, on ? std::to_string(paths) + " for each sample of a pixel: the image is small, and they take little "
-                                             "time beside guided light paths"
-                   : "many pixels or few light paths, slices or paths on from glossy surfaces, which take long, or the "
-                     "preset has one"};
+                                             "time beside light paths"
+                   : "many pixels or few light paths, paths on from glossy surfaces, which take long, or the preset "
+                     "has one"};
 }
 
 } // namespace

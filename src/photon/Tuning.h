@@ -18,13 +18,13 @@ namespace tungsten::photon::tuning {
 /// study cbox-128
 inline constexpr size_t SurfacePoints = 1 << 16, LeastSurfaceSamples = 2, MostSurfaceSamples = 4;
 
-/// Camera paths of a sample in small images, where guided records are splatted: as many for each pixel as make so many
-/// in all, and no more than records, at most. A pass of guided photons takes long beside one path for each pixel, which
-/// at the edges of doors and bodies sees one side alone, and behind refraction a few of the photons. Variance x CPU at
-/// 32 x 32 with 6 over with 1, best beams and points: two rooms 0.32 and 0.30, several lights 0.24 and 0.55, milk
-/// behind glass 0.55 and 0.68; with 4: 0.42 to 0.50, 0.53 and 0.58, 0.59 and 0.63, lamp in fog 0.70 and 0.83, cloud in
-/// haze 0.36 and 0.45. Bench: study bodies
-inline constexpr uint64_t CameraPaths = 1 << 14, MostCameraPaths = 6;
+/// Camera paths of a sample in small images: as many for each pixel as make so many in all, and no more than records,
+/// at most. A pass of photons takes long beside one path for each pixel, which at the edges of doors and bodies sees
+/// one side alone, and between and behind glass a few of the photons. Variance x CPU with 6 over with 1, best beams and
+/// points: two rooms 0.32 and 0.30, several lights 0.24 and 0.55, milk behind glass 0.55 and 0.68, a glass ball in fog
+/// 0.23 and 0.23; with 4: 0.42 to 0.50, 0.53 and 0.58, 0.59 and 0.63. Slices take longer to gather: twelve scenes 0.68
+/// with 3, none above 1.01, and 0.66 with 6, up to 1.6. Bench: study bodies and unseen
+inline constexpr uint64_t CameraPaths = 1 << 14, MostCameraPaths = 6, MostWithSlices = 3;
 
 /// Photons or beams that a redirected ray meets, about, out of all. MSE x CPU of dragon at 160 x 160, before highlight
 /// paths shared them: 0.25 with all photons, 0.17 with 64, 0.20 with 32 and 16. Bench: study dragon-160

@@ -83,8 +83,9 @@ INSTANTIATE_TEST_SUITE_P(
                     FarCase{"Hypervolumes", "hypervolumes", 1e4, false},
                     FarCase{"PlainFilm", "balls", 40.0, false, TwoFrames, 4.0f, "off", 96},
                     FarCase{"FilmOfBalls", "balls", 400.0, false, TwoFrames},
-                    FarCase{"FilmOfVolumes", "volumes", 40.0, false, TwoFrames},
-                    FarCase{"SharedFilm", "mis_volumes_balls", 40.0, false, TwoFrames},
+                    FarCase{"FilmOfVolumes", "volumes", 40.0, false, TwoFrames, 4.0f, R"({"plain_share": 0})", 12},
+                    FarCase{"SharedFilm", "mis_volumes_balls", 40.0, false, TwoFrames, 4.0f, R"({"plain_share": 0})",
+                            12},
                     FarCase{"DenseFilm", "mis_volumes_balls", 5.0, false, TwoFrames, 9.0f, "best", 16}),
     [](const auto& test) { return test.param.name; });
 

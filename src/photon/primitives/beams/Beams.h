@@ -44,7 +44,6 @@ struct Beams {
     static constexpr bool ManyFrames = false;
     static constexpr bool NeedsPlace = true;
     static constexpr bool LimitsRecords = false;
-    static constexpr bool SplatsOften = true;
     static constexpr const char* Effect = "photon beams";
     static constexpr const char* Reason = "a medium scatters, volume_photon_type is beams";
     static constexpr const char* Stored = "photon beams";

@@ -18,7 +18,6 @@ struct Points {
     static constexpr bool ManyFrames = false;     ///< a record shows in one frame, or a few
     static constexpr bool NeedsPlace = true;      ///< to aim guided paths at, also where the camera's time is left out
     static constexpr bool LimitsRecords = false;  ///< guided paths thin them by how many they expect (RecordBudget)
-    static constexpr bool SplatsOften = true;     ///< a few camera paths a pixel cost little beside light paths
     static constexpr const char* Effect = "volume photon points";
     static constexpr const char* Reason = "a medium scatters";
     static constexpr const char* Stored = "stored volume photons"; ///< counters

@@ -66,7 +66,6 @@ struct Slices {
     static constexpr bool ManyFrames = true;
     static constexpr bool NeedsPlace = false;
     static constexpr bool LimitsRecords = true;
-    static constexpr bool SplatsOften = false;
     static constexpr const char* Effect = "sliced primitives";
     static constexpr const char* Reason = "a medium scatters, volume_photon_type asks for it";
     static constexpr const char* Stored = "sliced primitives"; ///< counters
