@@ -18,6 +18,8 @@ class PhotonIntegrator : public Integrator {
     PhotonIntegrator(std::shared_ptr<const Scene> scene, PhotonSettings settings);
     void plan(SceneFacts& facts, Features& features) const override;
     void prepare(const SceneFacts& facts, const ProgressToken& watch, Statistics& statistics) override;
+    /// Of a sample of a pixel.
+    [[nodiscard]] uint32_t cameraPaths() const { return plan_.cameraPaths; }
     [[nodiscard]] double memoryBytes() const override;
     [[nodiscard]] bool leavesBias(const SceneFacts& facts) const override;
     [[nodiscard]] bool cutsLightPaths() const override { return true; }
