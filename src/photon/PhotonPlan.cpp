@@ -154,8 +154,8 @@ Decision extraCameraPathsOf(const Given& given, const PhotonPlan& plan, uint32_t
     const bool on = paths > 1 && given.policy().guides() && !given.policy().sampling.published && !plan.glossyPaths.on;
     return {on, on ? std::to_string(paths) + " for each sample of a pixel: the image is small, and they take little "
                                              "time beside light paths"
-                   : "many pixels or few light paths, paths on from glossy surfaces, which take long, or the preset "
-                     "has one"};
+                   : "many pixels or few light paths, paths on from glossy surfaces, which take long, or no DARTS "
+                     "but the published one"};
 }
 
 } // namespace

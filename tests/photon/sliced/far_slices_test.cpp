@@ -76,17 +76,16 @@ TEST_P(FarSlices, BringWhatPathsBring) {
 
 INSTANTIATE_TEST_SUITE_P(
     Cases, FarSlices,
-    testing::Values(FarCase{"BallsNear", "balls", 5.0, true}, FarCase{"Balls", "balls", 1e4, true},
-                    FarCase{"BallsFarther", "balls", 8e4, true},
-                    FarCase{"Planes", "planes", 1e4, true, OneGate, 4.0f, "best", 128},
-                    FarCase{"Volumes", "volumes", 1e4, false}, FarCase{"Shared", "mis_volumes_balls", 1e4, false},
-                    FarCase{"Hypervolumes", "hypervolumes", 1e4, false},
-                    FarCase{"PlainFilm", "balls", 40.0, false, TwoFrames, 4.0f, "off", 96},
-                    FarCase{"FilmOfBalls", "balls", 400.0, false, TwoFrames},
-                    FarCase{"FilmOfVolumes", "volumes", 40.0, false, TwoFrames, 4.0f, R"({"plain_share": 0})", 12},
-                    FarCase{"SharedFilm", "mis_volumes_balls", 40.0, false, TwoFrames, 4.0f, R"({"plain_share": 0})",
-                            12},
-                    FarCase{"DenseFilm", "mis_volumes_balls", 5.0, false, TwoFrames, 9.0f, "best", 16}),
+    testing::Values(
+        FarCase{"BallsNear", "balls", 5.0, true}, FarCase{"Balls", "balls", 1e4, true},
+        FarCase{"BallsFarther", "balls", 8e4, true}, FarCase{"Planes", "planes", 1e4, true, OneGate, 4.0f, "best", 128},
+        FarCase{"Volumes", "volumes", 1e4, false}, FarCase{"Shared", "mis_volumes_balls", 1e4, false},
+        FarCase{"Hypervolumes", "hypervolumes", 1e4, false},
+        FarCase{"PlainFilm", "balls", 40.0, false, TwoFrames, 4.0f, "off", 96},
+        FarCase{"FilmOfBalls", "balls", 400.0, false, TwoFrames},
+        FarCase{"FilmOfVolumes", "volumes", 40.0, false, TwoFrames, 4.0f, R"({"plain_share": 0})", 12},
+        FarCase{"SharedFilm", "mis_volumes_balls", 40.0, false, TwoFrames, 4.0f, R"({"plain_share": 0})", 12},
+        FarCase{"DenseFilm", "mis_volumes_balls", 5.0, false, TwoFrames, 9.0f, R"({"plain_share": 0})", 16}),
     [](const auto& test) { return test.param.name; });
 
 } // namespace
