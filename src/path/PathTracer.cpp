@@ -505,12 +505,14 @@ void PathTracer::chooseShare(const ProgressToken& watch, Statistics& statistics)
     const GuidedContext guided = guidedContext(watch);
     const PathContext plain = plainContext(watch);
     const auto width = uint64_t(scene_->camera.resolution.x), pixels = width * uint64_t(scene_->camera.resolution.y);
-    SharePilot pilot;
+    SharePilot pilot, alone;
     PlainTrail trail;
-    StrategyCounters counted;
+    StrategyCounters counted, countedAlone;
     Sampler places(Key, RandomStream::Pilot, 0, 0);
     uint64_t traced = 0;
     PathCosts costs;
+    const auto tracePlainAlone =
+        plan_.media ? &PathTracer::tracePlain<true, true> : &PathTracer::tracePlain<true, false>;
     for (size_t group = 0; group < MostPixels; ++group) {
         const uint64_t pixel = std::min(uint64_t(places.nextDouble() * double(pixels)), pixels - 1);
         for (int i = 0; i < SharePilot::PathsOfPixel; ++i, ++traced) {
@@ -528,12 +530,17 @@ void PathTracer::chooseShare(const ProgressToken& watch, Statistics& statistics)
             } else {
                 trail.start(guided, *targets_, sink, counted.densities, sampler);
                 tracePlainBesideGuided(plain, {&trail}, sink, counters, sampler, ray);
+                PixelAccumulator own(alone, sensor_, countedAlone.plain);
+                alone.begin(Strategy::Plain);
+                (this->*tracePlainAlone)(plain, ray, own, countedAlone.plain, sampler,
+                                         radicalInverse(uint32_t(traced / 2)));
+                pilot.tellPairsOfAlone(alone.pairsOfLast());
             }
         }
         watch.advance();
         costs = this->costs(counted);
         if (traced < transport::tuning::LeastPilotPaths) continue;
-        if (costs.sum() > double(transport::tuning::MostPilotCost)) break;
+        if (costs.sum() + this->costs(countedAlone).plain > double(transport::tuning::MostPilotCost)) break;
         if ((group & (group + 1)) == 0 &&
             pilot.effective(Strategy::Plain) >= 10.0 * transport::tuning::LeastEffective &&
             pilot.effective(Strategy::Guided) >= 10.0 * transport::tuning::LeastEffective && pilot.isSure(costs))

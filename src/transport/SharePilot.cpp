@@ -35,6 +35,26 @@ double SharePilot::squaresOfLast() const {
     return squares;
 }
 
+double SharePilot::pairsOfLast() const {
+    if (paths_.empty()) return 0.0;
+    std::unordered_map<int, double> frames;
+    double pairs = 0.0;
+    for (size_t k = paths_.back().first; k < found_.size(); ++k) {
+        const double value = double(found_[k].value);
+        double& before = frames[found_[k].frame];
+        pairs += 2.0 * before * value;
+        before += value;
+    }
+    return pairs;
+}
+
+void SharePilot::tellPairsOfAlone(double pairs) {
+    if (paths_.empty()) return;
+    alone_.resize((paths_.size() - 1) / PathsOfPixel + 1);
+    alone_.back().sum += pairs;
+    ++alone_.back().paths;
+}
+
 double SharePilot::effective(Strategy strategy) const {
     double sum = 0.0, squares = 0.0;
     for (size_t i = 0; i < paths_.size(); ++i) {
@@ -62,15 +82,17 @@ auto SharePilot::momentsByPixel(const StrategyBalance& balance) const -> std::ve
     const double guidedFactor = double(balance.guided) / double(Halves.guided);
     for (size_t i = 0; i < moments.size() * PathsOfPixel; ++i) {
         const Strategy strategy = paths_[i].strategy;
-        Moments& pixel = moments[i / PathsOfPixel];
+        const size_t place = i / PathsOfPixel;
+        Moments& pixel = moments[place];
+        const Pairs* const alone = place < alone_.size() && alone_[place].paths > 0 ? &alone_[place] : nullptr;
         before.clear();
         if (i % PathsOfPixel == 0) halves.clear();
         for (size_t k = paths_[i].first; k < end(i); ++k) {
             const double here = weighed(found_[k], strategy, Halves), there = weighed(found_[k], strategy, balance);
             Before& frame = before[found_[k].frame];
-            const double inPairs = balance.guided > 0.0f         ? here
-                                   : strategy == Strategy::Plain ? there / double(Halves.plain)
-                                                                 : 0.0;
+            const double inPairs = balance.guided > 0.0f                             ? here
+                                   : alone == nullptr && strategy == Strategy::Plain ? there / double(Halves.plain)
+                                                                                     : 0.0;
             pixel.second += here * there + 2.0 * inPairs * frame.onWay + 2.0 * there * frame.aside;
             if (found_[k].found == Found::OnWay)
                 frame.onWay += there;
@@ -78,8 +100,9 @@ auto SharePilot::momentsByPixel(const StrategyBalance& balance) const -> std::ve
                 frame.aside += there * guidedFactor;
             halves[found_[k].frame][(i % PathsOfPixel) / 2] += 0.5 * here;
         }
-        if (i % PathsOfPixel == PathsOfPixel - 1)
-            for (const auto& [frame, half] : halves) pixel.squaredMean += half[0] * half[1] * double(PathsOfPixel);
+        if (i % PathsOfPixel < PathsOfPixel - 1) continue;
+        if (balance.guided == 0.0f && alone) pixel.second += double(PathsOfPixel) * alone->sum / double(alone->paths);
+        for (const auto& [frame, half] : halves) pixel.squaredMean += half[0] * half[1] * double(PathsOfPixel);
     }
     return moments;
 }

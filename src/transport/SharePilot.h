@@ -43,6 +43,13 @@ class SharePilot {
     [[nodiscard]] float value(size_t contribution) const { return found_[contribution].value; }
     /// Of what the last path has found in each frame, weighed as if half of all paths were plain: the sum of squares.
     [[nodiscard]] double squaresOfLast() const;
+    /// Of what the last path has found by its own estimate: the square of the sum in each frame, less those of single
+    /// contributions.
+    [[nodiscard]] double pairsOfLast() const;
+    /// pairsOfLast() of a path of the pixel at hand that is plain as all are without guided ones: its vertices choose
+    /// points of lights by themselves, while those beside guided ones connect to one. Where it is not told, these
+    /// count.
+    void tellPairsOfAlone(double pairs);
 
     /// How many contributions of their mean would have the same spread, of all that one strategy, or both together,
     /// found.
@@ -94,8 +101,14 @@ class SharePilot {
     [[nodiscard]] double weighed(const Contribution& contribution, Strategy strategy,
                                  const StrategyBalance& balance) const;
 
+    struct Pairs {
+        double sum = 0.0;
+        int paths = 0;
+    };
+
     std::vector<Path> paths_;
     std::vector<Contribution> found_;
+    std::vector<Pairs> alone_; ///< by pixel
 };
 
 } // namespace tungsten::transport

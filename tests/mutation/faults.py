@@ -334,6 +334,8 @@ FAULTS = [
      [("path_tests", "PlainTrail.*")]),  # densities forget roulette and splits
     ("src/path/StepsToEmitter.cpp", "path.logRatio = start_.logRatio + logOfQuotient(flight.pdf, plain.pdf);", "path.logRatio = start_.logRatio + logOfQuotient(2.0f * flight.pdf, plain.pdf);",
      [("path_tests", "PlainTrail.*")]),  # guided flights are twice as dense as they are
+    ("src/transport/SharePilot.cpp", "pixel.second += double(PathsOfPixel) * alone->sum", "pixel.second += alone->sum",
+     [("path_tests", "SharePilot.KnowsPlainPathsAsTheyAreAlone")]),  # plain paths alone vary less than they do
     ("src/path/PlainTrail.cpp", "guided.logRatio += std::log(steps.expectedCopies(guided, vertex));", ";",
      [("path_tests", "PlainTrail.*")]),  # plain paths' densities forget roulette and splits
     ("src/transport/SharePilot.cpp", "pixel.squaredMean += half[0] * half[1] * double(PathsOfPixel);", ";",

@@ -128,6 +128,48 @@ TEST(SharePilot, JudgesPlainPathsByWhatTheyWouldBring) {
     }
 }
 
+/// Vertices of plain paths choose points of lights by themselves, and share one beside guided paths: what their
+/// contributions bring in pairs differs where a point in time is so for all of a path.
+TEST(SharePilot, KnowsPlainPathsAsTheyAreAlone) {
+    GuidedSetup setup(R"({"media": [{"name": "fog", "type": "homogeneous", "sigma_s": 4, "sigma_a": 0}],
+      "primitives": [{"type": "cube", "int_medium": "fog", "bsdf": {"type": "forward"}},
+                     {"type": "sphere", "emission": 40, "bsdf": {"type": "null"},
+                      "transform": {"position": [0.6, 0.6, 2], "scale": 0.9}}],
+      "camera": {"resolution": 1, "fov": 8, "transform": {"position": [0, 0, 5], "look_at": [0, 0, 0]}},
+      "integrator": {"type": "path_tracer", "max_bounces": 32, "darts": "best", "transient_time_center": 7,
+                     "transient_time_width": 1}, "renderer": {}})");
+    const GuidedContext guided = setup.guided();
+    const PathContext plain = setup.plain();
+    PathCounters counters;
+    SharePilot pilot, alone, beside;
+    PlainTrail trail;
+    for (uint64_t i = 0; i < 40000; ++i) {
+        const Sampler sampler(3, RandomStream::Test, 1, i);
+        Sampler lens = sampler;
+        const Ray ray = setup.scene.camera.generateRay({0, 0}, lens.next2D(), lens.next2D());
+        PixelAccumulator sink(pilot, setup.sensor, counters), own(alone, setup.sensor, counters),
+            shared(beside, setup.sensor, counters);
+        for (SharePilot* of : {&pilot, &beside}) of->begin(i % 2 == 0 ? Strategy::Plain : Strategy::Guided);
+        if (i % 2 == 1) {
+            Sampler light = sampler.branch(RandomStream::Target, 0);
+            const auto target = setup.targets.sample(0.5f, light, setup.watch, counters);
+            for (PixelAccumulator* to : {&sink, &shared}) traceGuidedPath(guided, *to, counters, sampler, *target, ray);
+            continue;
+        }
+        for (PixelAccumulator* to : {&sink, &shared}) {
+            trail.start(guided, setup.targets, *to, counters, sampler);
+            tracePlainBesideGuided(plain, {&trail}, *to, counters, sampler, ray);
+        }
+        alone.begin(Strategy::Plain);
+        tracePath<true, true>(plain, own, counters, sampler, nullptr, ray);
+        pilot.tellPairsOfAlone(alone.pairsOfLast());
+    }
+    const double own = alone.ownSecondMoment(Strategy::Plain);
+    EXPECT_NEAR(pilot.secondMoment({1.0f, 0.0f}), own, 0.1 * own);
+    EXPECT_GT(beside.secondMoment({1.0f, 0.0f}), 1.3 * own) << "points make no difference: nothing is tested";
+    EXPECT_NEAR(pilot.secondMoment({0.5f, 0.5f}), beside.secondMoment({0.5f, 0.5f}), 1e-9 * own);
+}
+
 /// Where guides do not go, or go too densely, or both strategies find light by several techniques: the mean is the same
 /// whoever has how many of the paths.
 struct BalancedCase {
