@@ -13,7 +13,7 @@ from darts_bench.run import BenchError, add_renderer, film, require_renderer
 
 #: Of what a counter, or a sum of some, counts in a render: (row of the table, counters).
 WALK = [("vertex", ["medium events", "surface events"]), ("ray", ["rays", "shadow rays"]), ("controlVertex", ["control vertices"])]
-PATHS = [*WALK, ("connection", ["connections"]), ("density", ["vertices with densities of guided paths"])]
+PATHS = [*WALK, ("connection", ["connections"]), ("point", ["points of emitters compared"]), ("density", ["vertices with densities of guided paths"])]
 PHOTONS = [("path", ["photons"]), *WALK, ("connection", ["surface connections"]), ("record", ["stored volume photons"]),
            ("density", ["flights with densities of guided paths"])]
 WALKS_OF_PASSES = [("path", ["photons"]), ("ray", ["rays"]), ("mediumEvent", ["medium events"]), ("surfaceEvent", ["surface events"]),

@@ -29,17 +29,39 @@ TargetChoice::TargetChoice(const Scene& scene, Emitters emitters, const std::vec
     }
 }
 
+bool TargetChoice::hasOtherPoints(int index) const {
+    return index >= 0 && !scene_.emitters[size_t(index)].isDelta() && radii_[size_t(index)] > 0.0f;
+}
+
+/// A lattice of rank 1: k / Points (1, 5) modulo 1.
+Vec2f TargetChoice::otherPoint(const Vec2f& u, size_t k) {
+    const auto shifted = [](float x, size_t steps) {
+        const float shift = float(steps % Points) / float(Points);
+        return x < 1.0f - shift ? x + shift : x - (1.0f - shift); // no digit is lost
+    };
+    return {shifted(u.x, k), shifted(u.y, 5 * k)};
+}
+
+PathTarget TargetChoice::at(size_t index, const Vec2f& u) const {
+    const Emitter& emitter = scene_.emitters[index];
+    const transport::Vertex point(scene_, emitter, sampleEmissionPoint(emitter, u));
+    return {{point, Rgb(1.0f / probability(index))},
+            &emitter,
+            int(index),
+            choice(index),
+            emitter.emissionTime,
+            u,
+            radii_[index]};
+}
+
 std::optional<PathTarget> TargetChoice::of(size_t index, Sampler& sampler, const ProgressToken& watch,
                                            PathCounters& counters) const {
     const Emitter& emitter = scene_.emitters[index];
     const Vec2f uPosition = sampler.next2D();
-    const transport::Vertex point(scene_, emitter, sampleEmissionPoint(emitter, uPosition));
-    PathTarget target{
-        {point, Rgb(1.0f / probability(index))}, &emitter, int(index), choice(index), emitter.emissionTime};
-    if (emitter.isDelta())
-        return scatterLaser(target, sampleEmission(emitter, uPosition, {0.5f, 0.5f}), sampler, watch, counters);
-    target.emitterRadius = radii_[index];
-    return target;
+    PathTarget target = at(index, uPosition);
+    if (!emitter.isDelta()) return target;
+    target.emitterRadius = 0.0f;
+    return scatterLaser(target, sampleEmission(emitter, uPosition, {0.5f, 0.5f}), sampler, watch, counters);
 }
 
 namespace {

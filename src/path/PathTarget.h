@@ -2,6 +2,7 @@
 // What a whole path connects to: one point that sends light, chosen before the path starts.
 
 #include "path/PixelAccumulator.h"
+#include "path/Tuning.h"
 
 #include "transport/Balance.h"
 #include "transport/Vertex.h"
@@ -26,6 +27,7 @@ struct PathTarget : transport::SubpathEnd {
     int index;                  ///< of the emitter; -1 for virtual sources, which cannot be hit
     EmitterChoice choice;       ///< of the emitter
     double start;               ///< when light leaves the vertex
+    Vec2f u{0.0f};              ///< random numbers that drew the point
     float emitterRadius = 0.0f; ///< distance from the vertex to the emitter's farthest point
     int interactions = 0;       ///< of the light's own path so far, the virtual source included
     int mediumScatters = 0;     ///< of these, in media
@@ -64,6 +66,14 @@ class TargetChoice {
     /// escapes.
     [[nodiscard]] std::optional<PathTarget> of(size_t emitter, Sampler& sampler, const ProgressToken& watch,
                                                PathCounters& counters) const;
+    /// The point of an emitter that these random numbers draw.
+    [[nodiscard]] PathTarget at(size_t emitter, const Vec2f& u) const;
+    /// An emitter whose points guided paths choose among; none for virtual sources (-1).
+    [[nodiscard]] bool hasOtherPoints(int emitter) const;
+    /// A lattice of so many points on the unit square, shifted modulo 1 until the k-th is the first one of another: all
+    /// of them have the same set of others. A choice among a set thus has a density that is known.
+    static constexpr size_t Points = tuning::EntryPoints;
+    [[nodiscard]] static Vec2f otherPoint(const Vec2f& u, size_t k);
     [[nodiscard]] std::optional<PathTarget> sample(float u, Sampler& sampler, const ProgressToken& watch,
                                                    PathCounters& counters) const {
         return any() ? of(choose(u), sampler, watch, counters) : std::nullopt;

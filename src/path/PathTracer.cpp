@@ -35,6 +35,7 @@ void report(const PathCounters& counters, Statistics& statistics) {
     statistics.add(counter::ShadowRays, counters.shadowRays);
     statistics.add(counter::ControlVertices, counters.controlVertices);
     statistics.add("plain paths beside guided ones", counters.plainPaths);
+    statistics.add("points of emitters compared", counters.points);
     statistics.add("vertices with densities of guided paths", counters.densities);
     statistics.add(counter::LightVertexConnections, counters.lightVertices);
     statistics.add(counter::GlossyLightVertexConnections, counters.reflectedLight);
@@ -220,8 +221,9 @@ void PathTracer::tracePlain(const PathContext& context, const Ray& ray, PixelAcc
 }
 
 GuidedContext PathTracer::guidedContext(const ProgressToken& watch) const {
-    return {*scene_, settings_,           sensor_,       *windows_, guides_,  lightCaches_,
-            *bound_, escapeModels_.get(), looksThrough_, watch,     balance_, surfaceOdds_};
+    const TargetChoice* pointTargets = settings_.policy.sampling.published ? nullptr : &*targets_;
+    return {*scene_,       settings_, sensor_,  *windows_,    guides_,     lightCaches_, *bound_, escapeModels_.get(),
+            looksThrough_, watch,     balance_, pointTargets, surfaceOdds_};
 }
 
 PathContext PathTracer::plainContext(const ProgressToken& watch) const {
@@ -431,17 +433,18 @@ double PathTracer::cost(const PathCounters& counters, const tuning::Costs::Walk&
                                                  std::log2(1.0 + double(scene_->geometry->triangleCount())));
     return each.vertex * double(counters.mediumEvents + counters.surfaceEvents) +
            ray * double(counters.rays + counters.shadowRays) + each.connection * double(counters.connections) +
-           each.controlVertex * double(counters.controlVertices);
+           each.controlVertex * double(counters.controlVertices) + each.point * double(counters.points);
 }
 
 PathCosts PathTracer::costs(const StrategyCounters& counters) const {
     const PathCounters& plain = counters.plain;
     const double kept =
         balance_.both() ? tuning::Nanoseconds.trail * double(plain.mediumEvents + plain.surfaceEvents) : 0.0;
-    return {cost(plain, tuning::Nanoseconds.plain),
-            kept + tuning::Nanoseconds.density * double(counters.densities.densities) +
-                cost(counters.densities, {0.0, tuning::Nanoseconds.plain.ray, 0.0, 0.0}),
-            cost(counters.guided, tuning::Nanoseconds.guided)};
+    return {
+        cost(plain, tuning::Nanoseconds.plain),
+        kept + tuning::Nanoseconds.density * double(counters.densities.densities) +
+            cost(counters.densities, {.ray = tuning::Nanoseconds.plain.ray, .point = tuning::Nanoseconds.guided.point}),
+        cost(counters.guided, tuning::Nanoseconds.guided)};
 }
 
 float PathTracer::measureSurfaceOdds(const ProgressToken& watch) const {

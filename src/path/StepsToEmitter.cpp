@@ -18,13 +18,8 @@ PathGuides PathGuides::of(const Scene& scene, const transport::Policy& policy, c
         if (!medium.scatters() || facts.isExcluded(i)) settings.direction = darts::Direction::Phase;
         const darts::Medium coefficients{darts::vec3(medium.sigmaA()), darts::vec3(medium.sigmaS()), medium.phase.g()};
         guides.media.emplace_back(settings, coefficients);
-        darts::Settings diffuse = settings, glossy = settings;
-        if (!policy.sampling.published) {
-            diffuse.alpha = std::max(diffuse.alpha, darts::DirectionSampler::RoughAlpha);
-            glossy.alpha = std::max(glossy.alpha, tuning::GlossyAlpha);
-        }
-        guides.diffuse.emplace_back(diffuse, coefficients);
-        guides.glossy.emplace_back(glossy, coefficients);
+        if (!policy.sampling.published) settings.alpha = std::max(settings.alpha, darts::DirectionSampler::RoughAlpha);
+        guides.surfaces.emplace_back(settings, coefficients);
     }
     return guides;
 }
@@ -65,9 +60,7 @@ const darts::Guide* StepsToEmitter::guideFor(const transport::Vertex& vertex, co
     const Region ahead = vertex.regionTowards(back, region);
     const Medium* medium = context_.scene.medium(ahead);
     if (!medium || !medium->scatters()) return nullptr;
-    const bool diffuse = (vertex.lobes() & lobe::DiffuseReflection) != 0;
-    const auto& guides = diffuse ? guided_->guides.diffuse : guided_->guides.glossy;
-    const darts::Guide& guide = guides[size_t(ahead.medium)];
+    const darts::Guide& guide = guided_->guides.surfaces[size_t(ahead.medium)];
     return guide.settings().direction == darts::Direction::Phase ? nullptr : &guide;
 }
 
@@ -105,9 +98,10 @@ void StepsToEmitter::setEscapeModelFrom(const PathState& path, const transport::
 bool StepsToEmitter::canArrive(PathState& path, const WalkVertex& vertex) {
     surfaceGuide_ = nullptr;
     if (guided_->balance.endsGuided(path.logRatio)) return false;
+    if (vertex.medium || (vertex.surface->bsdf->lobes() & lobe::Smooth) != 0) choosesPoint_ = false;
     if (path.timed) {
         setTimeBudgetFrom(path, vertex.position);
-        if (!reachable().alive()) return false;
+        if (!choosesPoint_ && !reachable().alive()) return false;
     }
     if (vertex.medium) {
         setEscapeModelFrom(path, {vertex.position});
@@ -132,11 +126,11 @@ std::optional<SurfaceHit> StepsToEmitter::see(const Ray& ray, const SurfaceHit* 
     return context_.scene.geometry->intersect(ray);
 }
 
-Ahead StepsToEmitter::ahead(PathState& path, const SurfaceHit* known) {
+Ahead StepsToEmitter::ahead(PathState& path, Asks asks, const SurfaceHit* known) {
     if (std::exchange(startsAnew_, false) && path.timed) setTimeBudgetFrom(path, path.ray.origin);
     const Medium* medium = context_.scene.medium(path.region);
     const Ahead ahead = !medium || !medium->scatters() ? aheadInEmpty(path, medium, known)
-                        : path.timed                   ? aheadInMedium(path, *medium, known)
+                        : path.timed                   ? aheadInMedium(path, *medium, asks, known)
                                                        : aheadUntimed(path, *medium, known);
     start_ = path;
     medium_ = medium;
@@ -146,7 +140,7 @@ Ahead StepsToEmitter::ahead(PathState& path, const SurfaceHit* known) {
 
 Ahead StepsToEmitter::aheadInEmpty(PathState& path, const Medium* medium, const SurfaceHit* known) {
     passage_ = Passage::Empty;
-    if (path.timed) {
+    if (path.timed && !choosesPoint_) {
         if (!reachable().alive()) return {};
         path.ray.tMax = bound(path.ray.direction);
     }
@@ -156,9 +150,52 @@ Ahead StepsToEmitter::aheadInEmpty(PathState& path, const Medium* medium, const 
     return ahead;
 }
 
-Ahead StepsToEmitter::aheadInMedium(PathState& path, const Medium& medium, const SurfaceHit* known) {
+float StepsToEmitter::logImportanceOfTarget(const PathState& path) {
+    constexpr float Never = transport::StrategyBalance::Never;
+    const Vec3f back = path.ray.origin - target_.vertex.position();
+    const float light = meanComponent(target_.intensity(back.normalized())) / back.length2();
+    if (!(light > 0.0f)) return Never;
+    setTimeBudgetFrom(path, path.ray.origin);
+    if (!budget().alive()) return Never;
+    setEscapeModelFrom(path, transport::FlightStart::along(path.ray));
+    ++context_.counters.points;
+    return guideOf(path.region).logExpectedContribution(budget(), light);
+}
+
+void StepsToEmitter::choosePoint(PathState& path, Asks asks) {
+    constexpr size_t Points = TargetChoice::Points;
+    choosesPoint_ = false;
+    if (!guided_->escapeModels->isBounded(path.region.medium, target_.emitter->medium)) return;
+    const PathTarget given = target_;
+    const auto other = [&](size_t k) {
+        return guided_->targets->at(size_t(given.index), TargetChoice::otherPoint(given.u, k));
+    };
+    std::array<float, Points> odds; // against those that every point has without a choice
+    for (size_t k = 0; k < Points; ++k) {
+        if (k > 0) target_ = other(k);
+        odds[k] = logImportanceOfTarget(path);
+    }
+    const float most = *std::max_element(odds.begin(), odds.end());
+    float sum = 0.0f;
+    for (float& each : odds) sum += each = most > transport::StrategyBalance::Never ? std::exp(each - most) : 1.0f;
+    // One choice in so many leaves the point that the path has.
+    for (float& each : odds) each = (1.0f + float(Points) * float(Points - 1) / sum * each) / float(Points);
+    size_t chosen = 0;
+    if (asks == Asks::Path) {
+        path.random.at(path.interactions, Draw::EmitterPoint);
+        float rest = path.random.next1D() * float(Points);
+        while (chosen + 1 < Points && (rest -= odds[chosen]) >= 0.0f) ++chosen;
+    }
+    path.throughput = path.throughput / odds[chosen];
+    target_ = chosen == 0 ? given : other(chosen);
+    if (hasDensities()) path.logRatio += std::log(odds[chosen]);
+    setTimeBudgetFrom(path, path.ray.origin);
+}
+
+Ahead StepsToEmitter::aheadInMedium(PathState& path, const Medium& medium, Asks asks, const SurfaceHit* known) {
     passage_ = Passage::Medium;
     if (!transport::BounceLimits::fly(path.flights, medium)) return {};
+    if (choosesPoint_) choosePoint(path, asks);
     setEscapeModelFrom(path, transport::FlightStart::along(path.ray));
     if (!reachable().alive()) return {};
     const darts::Guide& guide = guideOf(path.region);
@@ -174,6 +211,7 @@ Ahead StepsToEmitter::aheadInMedium(PathState& path, const Medium& medium, const
 
 Ahead StepsToEmitter::aheadUntimed(PathState& path, const Medium& medium, const SurfaceHit* known) {
     passage_ = Passage::Untimed;
+    choosesPoint_ = false;
     if (!transport::BounceLimits::fly(path.flights, medium)) return {};
     setTimeBudgetFrom(path, path.ray.origin);
     return {true, &medium, see(path.ray, known)};

@@ -30,9 +30,8 @@ struct PathGuides {
     static PathGuides of(const Scene& scene, const transport::Policy& policy, const SceneFacts& facts,
                          const ProgressToken& watch);
 
-    std::vector<darts::Guide> media;   ///< for flights, and for leaving scatterers
-    std::vector<darts::Guide> diffuse; ///< for leaving surfaces into it
-    std::vector<darts::Guide> glossy;  ///< for leaving surfaces without diffuse lobes
+    std::vector<darts::Guide> media;    ///< for flights, and for leaving scatterers
+    std::vector<darts::Guide> surfaces; ///< for leaving surfaces into it
 
     /// Number of tables of directions in use: one for every medium that has one.
     [[nodiscard]] size_t tables() const {
@@ -65,9 +64,10 @@ struct GuidedContext {
     const transport::EscapeModels* escapeModels; ///< null: media are taken for infinite
     bool forwardBoundaries;                      ///< connections must look through index-matched surfaces
     const ProgressToken& watch;
-    transport::StrategyBalance balance{}; ///< of guided paths beside plain ones
-    float surfaceOdds = 1.0f;             ///< TimeBudget::surfaceOdds of flights from the camera
-    FirstFlight* firstFlight = nullptr;   ///< told of in media, if not null
+    transport::StrategyBalance balance{};  ///< of guided paths beside plain ones
+    const TargetChoice* targets = nullptr; ///< paths choose among their emitter's points; null: they do not
+    float surfaceOdds = 1.0f;              ///< TimeBudget::surfaceOdds of flights from the camera
+    FirstFlight* firstFlight = nullptr;    ///< told of in media, if not null
 };
 
 class StepsToEmitter : public transport::GuidedSteps {
@@ -76,10 +76,11 @@ class StepsToEmitter : public transport::GuidedSteps {
 
     /// Light of the target is looked for in this window of time.
     StepsToEmitter(const GuidedContext& guided, PathCounters& counters, const PathTarget& target, size_t window = 0)
-        : context_{guided.scene, counters, guided.watch}, guided_(&guided), target_(target), window_(window) {}
+        : context_{guided.scene, counters, guided.watch}, guided_(&guided), target_(target), window_(window),
+          choosesPoint_(guided.targets && guided.escapeModels && guided.targets->hasOtherPoints(target.index)) {}
     [[nodiscard]] const transport::WalkContext& context() const { return context_; }
 
-    transport::Ahead ahead(PathState& path) { return ahead(path, nullptr); }
+    transport::Ahead ahead(PathState& path) { return ahead(path, Asks::Path, nullptr); }
     transport::Flight flight(PathState& path, const transport::Ahead& ahead);
     bool canArrive(PathState& path, const transport::WalkVertex& vertex);
     int copies(PathState& path, const transport::WalkVertex& vertex);
@@ -88,8 +89,8 @@ class StepsToEmitter : public transport::GuidedSteps {
 
     // These answer for a plain path (PlainTrail) how densely guided ones would have gone where it went. `path` has the
     // throughput that a guided path would have there.
-    /// ahead(), where the surface that ends the flight may be known.
-    transport::Ahead ahead(PathState& path, const SurfaceHit* known);
+    /// ahead(), where the target's point has been chosen, and the surface that ends the flight may be known.
+    transport::Ahead ahead(PathState& path, const SurfaceHit* known) { return ahead(path, Asks::Density, known); }
     [[nodiscard]] bool hasDensities() const { return guided_->balance.both(); }
     /// What copies() is on the average, without drawing.
     float expectedCopies(const PathState& path, const transport::WalkVertex& vertex);
@@ -145,9 +146,17 @@ class StepsToEmitter : public transport::GuidedSteps {
     [[nodiscard]] const darts::Heading& heading() const { return heading_; }
 
   private:
+    enum class Asks { Path, Density };
     // What lies ahead.
+    transport::Ahead ahead(PathState& path, Asks asks, const SurfaceHit* known);
     transport::Ahead aheadInEmpty(PathState& path, const Medium* medium, const SurfaceHit* known);
-    transport::Ahead aheadInMedium(PathState& path, const Medium& medium, const SurfaceHit* known);
+    transport::Ahead aheadInMedium(PathState& path, const Medium& medium, Asks asks, const SurfaceHit* known);
+    /// Where light must get out of the medium ahead: the target becomes one of a set of its emitter's points
+    /// (TargetChoice::otherPoint), by how much of their light may be in time. Density: p(u) = M w(u) / sum over the
+    /// set.
+    void choosePoint(PathState& path, Asks asks);
+    /// Logarithm of what the target brings to the ray's origin.
+    [[nodiscard]] float logImportanceOfTarget(const PathState& path);
     transport::Ahead aheadUntimed(PathState& path, const Medium& medium, const SurfaceHit* known);
     /// The surface ahead, up to the end of the ray.
     std::optional<SurfaceHit> see(const Ray& ray, const SurfaceHit* known);
@@ -199,6 +208,7 @@ class StepsToEmitter : public transport::GuidedSteps {
     const GuidedContext* guided_;
     PathTarget target_;
     size_t window_;
+    bool choosesPoint_; ///< where a scattering medium is met first; until then no step asks where the target's point is
     bool startsAnew_ = true; ///< the ray ahead has not been looked along
     Passage passage_ = Passage::Empty;
     const darts::Guide* surfaceGuide_ = nullptr;

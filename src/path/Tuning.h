@@ -12,16 +12,16 @@ namespace tungsten::path::tuning {
 
 // --- Guided paths ----------------------------------------------------------------------------------------------------
 
-/// Where nothing is diffuse guided directions hardly ever fall into the lobe; what they are given, a chain of glossy
-/// reflections lacks once per reflection. (Dragon: 1.7 times less variance than 0.5.) Bench: study dragon-160
-inline constexpr float GlossyAlpha = 5.0f;
+/// A guided path chooses among so many points of its emitter where it gets into a medium from outside. Bench: study
+/// bodies
+inline constexpr size_t EntryPoints = 8;
 
 // --- Plain and guided paths side by side -----------------------------------------------------------------------------
 
 /// What paths cost, in nanoseconds.
 struct Costs {
     struct Walk {
-        double vertex, ray, connection, controlVertex;
+        double vertex = 0.0, ray = 0.0, connection = 0.0, controlVertex = 0.0, point = 0.0;
     };
     Walk plain, guided;
     double sample;   ///< of a pixel, whatever becomes of its path
@@ -30,8 +30,8 @@ struct Costs {
     double density;  ///< of guided paths, at a vertex of a plain one
 };
 /// Fitted to CPU seconds and counters of 15 scenes: benchmarks/bench.py costs.
-inline constexpr Costs Nanoseconds{.plain = {95.0, 110.0, 20.0, 0.0},
-                                   .guided = {290.0, 210.0, 115.0, 400.0},
+inline constexpr Costs Nanoseconds{.plain = {95.0, 110.0, 20.0},
+                                   .guided = {290.0, 210.0, 115.0, 400.0, 400.0},
                                    .sample = 250.0,
                                    .rayByLog = 12.0,
                                    .trail = 80.0,

@@ -68,11 +68,16 @@ bool EscapeModels::isThin(const BoundedMedium& body) {
     return body.box.size().length() * body.reducedSigmaT < tuning::ThinDepth;
 }
 
+bool EscapeModels::isBounded(int medium, int from) const {
+    const BoundedMedium& body = bodies_[size_t(medium)];
+    return body.ends() && !isThin(body) && (from != medium || body.insides > 1);
+}
+
 void EscapeModels::choose(const FlightStart& start, const Region& region, const EscapeTarget& aim,
                           darts::TimeBudget& budget, uint64_t& rays) const {
     if (region.medium < 0 || budget.C == 0.0f) return;
+    if (!isBounded(region.medium, aim.medium)) return;
     const BoundedMedium& body = bodies_[size_t(region.medium)];
-    if (!body.ends() || isThin(body) || (aim.medium == region.medium && body.insides == 1)) return;
     if (body.primitive) {
         const BoundedMedium::BoundaryHit exit = body.intersectBoundary(start.position, darts::to<Vec3f>(budget.axis));
         const Bsdf& bsdf = *body.primitive->bsdfs[0];

@@ -47,6 +47,8 @@ class EscapeModels {
     /// budget.escape but for its extraLength. Adds the rays traced to `rays`.
     void choose(const FlightStart& start, const Region& region, const EscapeTarget& aim, darts::TimeBudget& budget,
                 uint64_t& rays) const;
+    /// Light of a point in the medium `from` (-1: none) may have to get through a boundary of this one.
+    [[nodiscard]] bool isBounded(int medium, int from) const;
 
   private:
     [[nodiscard]] bool any() const;

@@ -15,8 +15,9 @@ struct StepCounters {
     uint64_t surfaceEvents = 0;                                           ///< surfaces met
     uint64_t scattered = 0, mirrored = 0, refracted = 0, straight = 0;    ///< and left by these lobes
 
-    uint64_t rays = 0;  ///< of walks; connections count their own
-    uint64_t steps = 0; ///< of walks of this worker
+    uint64_t rays = 0;   ///< of walks; connections count their own
+    uint64_t steps = 0;  ///< of walks of this worker
+    uint64_t points = 0; ///< of emitters, whose importance has been worked out
 
     StepCounters& operator+=(const StepCounters& other) {
         mediumEvents += other.mediumEvents;
@@ -28,6 +29,7 @@ struct StepCounters {
         mirrored += other.mirrored;
         refracted += other.refracted;
         straight += other.straight;
+        points += other.points;
         rays += other.rays;
         steps += other.steps;
         return *this;

@@ -334,6 +334,10 @@ FAULTS = [
      [("path_tests", "PlainTrail.*")]),  # densities forget roulette and splits
     ("src/path/StepsToEmitter.cpp", "path.logRatio = start_.logRatio + logOfQuotient(flight.pdf, plain.pdf);", "path.logRatio = start_.logRatio + logOfQuotient(2.0f * flight.pdf, plain.pdf);",
      [("path_tests", "PlainTrail.*")]),  # guided flights are twice as dense as they are
+    ("src/path/StepsToEmitter.cpp", "path.throughput = path.throughput / odds[chosen];", ";",
+     [("path_tests", "Bodies.UnderALampInGatesOfAnyWidth")]),  # points of lamps that are chosen often bring too much
+    ("src/path/StepsToEmitter.cpp", "if (hasDensities()) path.logRatio += std::log(odds[chosen]);", ";",
+     [("path_tests", "PlainTrail.DensitiesOfPointsAreThoseTheyAreChosenBy")]),  # plain paths take points of lamps for chosen evenly
     ("src/transport/SharePilot.cpp", "pixel.second += double(PathsOfPixel) * alone->sum", "pixel.second += alone->sum",
      [("path_tests", "SharePilot.KnowsPlainPathsAsTheyAreAlone")]),  # plain paths alone vary less than they do
     ("src/path/PlainTrail.cpp", "guided.logRatio += std::log(steps.expectedCopies(guided, vertex));", ";",

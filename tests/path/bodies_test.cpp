@@ -132,7 +132,8 @@ TEST(Bodies, UnderALampInGatesOfAnyWidth) {
                 underALamp(width), {{guided ? GuidedAlone : "integrator.darts=off"}, guided ? 64u : 512u, 16, 8});
             mean[guided] = rendered->mean();
             error[guided] = rendered->pixelError(0) / 3.0;
-            EXPECT_EQ(rendered->statistics.counter("control vertices") > 0, guided);
+            for (const char* counter : {"control vertices", "points of emitters compared"})
+                EXPECT_EQ(rendered->statistics.counter(counter) > 0, guided) << counter;
         }
         EXPECT_NEAR(mean[1], mean[0], 4.5 * std::hypot(error[0], error[1])) << width;
         EXPECT_LT(std::hypot(error[0], error[1]), 0.1 * mean[0]) << width;

@@ -23,8 +23,8 @@ struct GuidedSetup {
     GuidedSetup& operator=(const GuidedSetup&) = delete;
 
     [[nodiscard]] GuidedContext guided() const {
-        return {scene, settings,           sensor, windows, guides,      lightCaches,
-                bound, escapeModels.get(), true,   watch,   {0.5f, 0.5f}};
+        return {scene, settings,           sensor, windows, guides,       lightCaches,
+                bound, escapeModels.get(), true,   watch,   {0.5f, 0.5f}, &targets};
     }
     [[nodiscard]] PathContext plain() const { return {scene, settings, lights, bound, nullptr, true, watch}; }
 

@@ -9,6 +9,8 @@
 
 #include <gtest/gtest.h>
 
+#include <set>
+
 namespace tungsten::path {
 namespace {
 
@@ -72,6 +74,27 @@ TEST(TargetChoice, LasersEndWhereNoPathWouldCount) {
     EXPECT_EQ(found(4), 3);
     EXPECT_EQ(found(6), 3);
     EXPECT_EQ(found(7), 6);
+}
+
+TEST(TargetChoice, PointsOfALatticeHaveOneSetOfOthers) {
+    constexpr size_t Points = TargetChoice::Points;
+    const auto setOf = [](const Vec2f& u) {
+        std::set<std::pair<float, float>> set;
+        for (size_t k = 0; k < Points; ++k) {
+            const Vec2f other = TargetChoice::otherPoint(u, k);
+            EXPECT_TRUE(other.x >= 0.0f && other.x < 1.0f && other.y >= 0.0f && other.y < 1.0f) << other.x << other.y;
+            set.insert({other.x, other.y});
+        }
+        return set;
+    };
+    Sampler sampler(1, RandomStream::Test, 0, 0);
+    for (int i = 0; i < 1000; ++i) {
+        const Vec2f u = i == 0 ? Vec2f(0.0f) : sampler.next2D();
+        EXPECT_EQ(TargetChoice::otherPoint(u, 0), u);
+        const auto set = setOf(u);
+        ASSERT_EQ(set.size(), Points);
+        for (size_t k = 1; k < Points; ++k) ASSERT_EQ(setOf(TargetChoice::otherPoint(u, k)), set);
+    }
 }
 
 } // namespace

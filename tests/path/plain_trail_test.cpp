@@ -20,6 +20,7 @@ class Replay : public transport::VisitorBase {
            const PathTarget& target, const Sampler& light)
         : context_(&context) {
         emitter_ = size_t(target.index);
+        point_ = target.u;
         trail_.start(context, targets, sink, counters, light);
     }
 
@@ -32,6 +33,7 @@ class Replay : public transport::VisitorBase {
         return true;
     }
     bool arrive(PathState& path, StepsToEmitter& steps, const Ahead& ahead, const Flight& flight) {
+        if (!(steps.target().u == point_)) return false; // it has chosen another one of its emitter's points
         const bool collided = flight.event == Flight::Event::Collision;
         Flight plain = flight;
         plain.pdf = transport::PlainFlight{ahead.medium, ahead.reach(), before_}.like(flight).pdf;
@@ -61,6 +63,7 @@ class Replay : public transport::VisitorBase {
     const GuidedContext* context_;
     PlainTrail trail_; ///< a value: copies of a path that is split have one each
     size_t emitter_ = 0;
+    Vec2f point_;
     ChannelDensities before_{1.0f};
 };
 
@@ -81,7 +84,7 @@ void replay(const std::string& json) {
     const GuidedContext context = setup.guided();
     Replay::compared = 0;
     Replay::largest = 0.0f;
-    for (uint64_t i = 0; i < 300; ++i) {
+    for (uint64_t i = 0; i < 2400; ++i) {
         PathCounters counters;
         SharePilot pilot;
         PixelAccumulator sink(pilot, setup.sensor, counters);
@@ -131,6 +134,54 @@ TEST(PlainTrail, AsksWhereTimeStartsAtTheFirstVertex) {
 
 TEST(PlainTrail, AsksWithRoulette) {
     replay(sceneOf(R"("sigma_s": 4, "sigma_a": 3)", "", Gate + R"(, "enable_rr": true)"));
+}
+
+/// Points of a lamp that guided paths choose, in 64 squares of their random numbers, against the densities that plain
+/// paths are told.
+TEST(PlainTrail, DensitiesOfPointsAreThoseTheyAreChosenBy) {
+    constexpr int Side = 8, Paths = 40000;
+    const GuidedSetup setup(
+        sceneOf(R"("sigma_s": 60, "sigma_a": 0)", "", R"("transient_time_center": 6.5, "transient_time_width": 0.2)"));
+    const GuidedContext context = setup.guided();
+    PathCounters counters;
+    std::array<double, Side * Side> chosen{}, expected{}, squares{};
+    const auto square = [](const Vec2f& u) { return size_t(u.y * Side) * Side + size_t(u.x * Side); };
+    for (uint64_t i = 0; i < 2 * Paths; ++i) {
+        const bool guides = i % 2 == 0;
+        Sampler light(1, RandomStream::Test, 1, i);
+        const auto target = setup.targets.of(0, light, setup.watch, counters);
+        ASSERT_TRUE(target);
+        PathState path{.random = Sampler(1, RandomStream::Test, 2, i),
+                       .ray = setup.scene.camera.generateRay({0, 0}, {0.5f, 0.5f}, {0.5f, 0.5f}),
+                       .region = setup.scene.cameraRegion,
+                       .timed = true};
+        StepsToEmitter steps(context, counters, *target);
+        const Ahead empty = steps.ahead(path);
+        ASSERT_TRUE(empty.flies && empty.hit);
+        path.ray.origin = empty.hit->position;
+        path.time += double(empty.hit->t);
+        path.region = setup.scene.primitives[0].inside;
+        const float before = path.logRatio;
+        if (guides) {
+            steps.ahead(path);
+            chosen[square(steps.target().u)] += 1.0;
+        } else {
+            steps.ahead(path, nullptr);
+            ASSERT_EQ(steps.target().u, target->u);
+            const double density = std::exp(double(path.logRatio - before));
+            expected[square(target->u)] += density;
+            squares[square(target->u)] += density * density;
+        }
+    }
+    double chi2 = 0.0, least = Paths, most = 0.0;
+    for (size_t i = 0; i < chosen.size(); ++i) {
+        const double difference = chosen[i] - expected[i];
+        chi2 += difference * difference / (chosen[i] + squares[i]);
+        least = std::min(least, expected[i]);
+        most = std::max(most, expected[i]);
+    }
+    EXPECT_LT(chi2, 64.0 + 4.5 * std::sqrt(2.0 * 64.0));
+    EXPECT_GT(most, 4.0 * least) << "points are alike: nothing is tested";
 }
 
 } // namespace

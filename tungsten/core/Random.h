@@ -47,6 +47,7 @@ enum class Draw : uint32_t {
     ControlVertex = 12,     ///< 1: whether it is connected
     FlightConnection = 13,  ///< 1: length of the connection for a control vertex
     Connection = 14,        ///< 1: the same, drawn before the direction
+    EmitterPoint = 15,      ///< 1: which of several, for a guided path that gets into a medium
     LightVertex = 16,       ///< 2
     ReflectedLight = 18,    ///< 2
     Untimed = 20,           ///< 2: a control vertex of a flight that takes no time
