@@ -14,6 +14,7 @@ import shutil
 import signal
 import subprocess
 import tempfile
+import threading
 import time
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
@@ -46,6 +47,13 @@ def require_renderer(tungsten):
 # ---- Starting it
 
 _running = set()  # process groups; workers() ends them, and takes them out
+_ending = threading.Event()  # workers() has begun to: what starts now ends itself
+
+
+def _end_all():
+    while _running:
+        with contextlib.suppress(KeyError, ProcessLookupError):
+            os.killpg(_running.pop(), signal.SIGKILL)
 
 
 def call(command, limit=LONGEST, cpu=None, first=None):
@@ -55,9 +63,15 @@ def call(command, limit=LONGEST, cpu=None, first=None):
     # A session of its own keeps Ctrl-C from the renderer, which would write a render cut short.
     shell = subprocess.Popen(["/bin/sh", "-c", '"$@" >&2 & echo $!; wait $!', "sh", *map(str, command)], stdout=subprocess.PIPE,
                              stderr=subprocess.PIPE, text=True, errors="replace", start_new_session=True)
-    pid, end, asked, messages = int(shell.stdout.readline()), time.monotonic() + limit, cpu is None, None
-    _running.add(shell.pid)
+    end, asked, messages = time.monotonic() + limit, cpu is None, None
+    ended = BenchError(f"{command[0]} was ended: others failed, or it was asked for")
     try:
+        _running.add(shell.pid)
+        pid = shell.stdout.readline()
+        if _ending.is_set():
+            _end_all()
+        if not pid or shell.pid not in _running:
+            raise ended
         while messages is None:
             left = max(end - time.monotonic(), 0.0)
             try:
@@ -66,11 +80,11 @@ def call(command, limit=LONGEST, cpu=None, first=None):
                 if time.monotonic() >= end:
                     os.killpg(shell.pid, signal.SIGKILL)
                     return None, shell.communicate()[1] + f"\nstopped: not finished after {limit:g} seconds"
-                if not asked and cpu_used(pid) >= cpu and first.exists():
-                    os.kill(pid, signal.SIGTERM)
+                if not asked and cpu_used(int(pid)) >= cpu and first.exists():
+                    os.kill(int(pid), signal.SIGTERM)
                     asked = True
         if shell.pid not in _running:
-            raise BenchError(f"{command[0]} was ended: others failed, or it was asked for")
+            raise ended
         return shell.returncode, messages
     finally:
         _running.discard(shell.pid)
@@ -119,12 +133,12 @@ def workers(count):
         yield pool
     except BaseException:
         pool.shutdown(wait=False, cancel_futures=True)
-        while _running:
-            with contextlib.suppress(KeyError, ProcessLookupError):
-                os.killpg(_running.pop(), signal.SIGKILL)
+        _ending.set()
+        _end_all()
         raise
     finally:
         pool.shutdown()
+        _ending.clear()
 
 
 # ---- What is kept
