@@ -18,8 +18,13 @@ PathGuides PathGuides::of(const Scene& scene, const transport::Policy& policy, c
         if (!medium.scatters() || facts.isExcluded(i)) settings.direction = darts::Direction::Phase;
         const darts::Medium coefficients{darts::vec3(medium.sigmaA()), darts::vec3(medium.sigmaS()), medium.phase.g()};
         guides.media.emplace_back(settings, coefficients);
-        if (!policy.sampling.published) settings.alpha = std::max(settings.alpha, darts::DirectionSampler::RoughAlpha);
-        guides.surfaces.emplace_back(settings, coefficients);
+        darts::Settings diffuse = settings, glossy = settings;
+        if (!policy.sampling.published) {
+            diffuse.alpha = std::max(diffuse.alpha, darts::DirectionSampler::RoughAlpha);
+            glossy.alpha = std::max(glossy.alpha, tuning::GlossyAlpha);
+        }
+        guides.diffuse.emplace_back(diffuse, coefficients);
+        guides.glossy.emplace_back(glossy, coefficients);
     }
     return guides;
 }
@@ -60,7 +65,9 @@ const darts::Guide* StepsToEmitter::guideFor(const transport::Vertex& vertex, co
     const Region ahead = vertex.regionTowards(back, region);
     const Medium* medium = context_.scene.medium(ahead);
     if (!medium || !medium->scatters()) return nullptr;
-    const darts::Guide& guide = guided_->guides.surfaces[size_t(ahead.medium)];
+    const bool diffuse = (vertex.lobes() & lobe::DiffuseReflection) != 0;
+    const auto& guides = diffuse ? guided_->guides.diffuse : guided_->guides.glossy;
+    const darts::Guide& guide = guides[size_t(ahead.medium)];
     return guide.settings().direction == darts::Direction::Phase ? nullptr : &guide;
 }
 

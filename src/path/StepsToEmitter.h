@@ -30,8 +30,9 @@ struct PathGuides {
     static PathGuides of(const Scene& scene, const transport::Policy& policy, const SceneFacts& facts,
                          const ProgressToken& watch);
 
-    std::vector<darts::Guide> media;    ///< for flights, and for leaving scatterers
-    std::vector<darts::Guide> surfaces; ///< for leaving surfaces into it
+    std::vector<darts::Guide> media;   ///< for flights, and for leaving scatterers
+    std::vector<darts::Guide> diffuse; ///< for leaving surfaces into it
+    std::vector<darts::Guide> glossy;  ///< for leaving surfaces without diffuse lobes
 
     /// Number of tables of directions in use: one for every medium that has one.
     [[nodiscard]] size_t tables() const {
