@@ -142,7 +142,7 @@ void EscapeModels::setGeometry(const Boundary& boundary, const Vec3f& position, 
         const bool same = face.normal.dot(boundary.exit.face.normal) > 0.99f;
         if (same || !((aim.position - face.point).dot(face.normal) > 0.0f)) continue;
         const darts::EscapeGeometry::Face other = faceOf(body, face, position, aim.position);
-        if (other.depth < tuning::FarthestFace * exit.faces[0].depth + 2.0f / body.reducedSigmaT) exit.faces.add(other);
+        if (other.depth < exit.faces[0].depth + tuning::ThinDepth / body.reducedSigmaT) exit.faces.add(other);
     }
     exit.reflectionA = darts::boundaryReflectionA(boundary.index);
     exit.outerSpeed = region.speed / boundary.beyond.speed;

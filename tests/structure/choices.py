@@ -16,7 +16,7 @@ TUNING = ["src/path/Tuning.h", "src/photon/Tuning.h", "src/transport/Tuning.h"]
 PLANS = ["src/path/PathPlan.cpp", "src/photon/PhotonPlan.cpp", "src/photon/primitives/sliced/Slices.cpp",
          "src/transport/GuidancePlan.cpp"]
 #: Today's figures, and what they are to come down to.
-CAPS = {"constants": 39, "switches": 2, "reasons": 30}
+CAPS = {"constants": 38, "switches": 2, "reasons": 30}
 GOALS = {"constants": 40, "switches": 2, "reasons": 30}
 
 REASONED = re.compile(r'return\s+(?:\{\s*(?:true|false|on|any)\s*,|")')

@@ -9,13 +9,16 @@ import signal
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 import unittest
+import unittest.mock
 from pathlib import Path
 
 PROJECT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(PROJECT / "tests/support"))
+sys.path[:0] = [str(PROJECT / "tests/support"), str(PROJECT / "benchmarks")]
 
+from darts_bench import run  # noqa: E402
 from study_command import started, study  # noqa: E402
 
 TUNGSTEN = os.environ.get("TUNGSTEN", str(PROJECT / "build/bin/tungsten"))
@@ -95,6 +98,22 @@ class Submit(unittest.TestCase):
         process.send_signal(signal.SIGINT)
         self.assertIn("interrupted", process.communicate(timeout=60)[1])
         self.assertEqual((process.returncode, self.runs()), (130, []))
+
+    def test_what_starts_while_others_are_ended_is_ended(self):
+        """A process whose shell is started before the others are ended, and answers after."""
+        started_late, popen = threading.Event(), subprocess.Popen
+
+        def slow(*arguments, **options):
+            started_late.set()
+            time.sleep(0.5)
+            return popen(*arguments, **options)
+
+        with unittest.mock.patch.object(run.subprocess, "Popen", slow), self.assertRaises(KeyboardInterrupt), run.workers(1) as pool:
+            late = pool.submit(run.call, ["sleep", "20"])
+            started_late.wait()
+            raise KeyboardInterrupt
+        self.assertIsInstance(late.exception(), run.BenchError)
+        self.assertEqual(run.call(["true"]), (0, ""))
 
     def test_what_goes_wrong_is_said(self):
         error = self.call("submit", "--sbatch", self.stub, "--sbatch-option=--fail", code=2).stderr
