@@ -29,8 +29,8 @@ TargetChoice::TargetChoice(const Scene& scene, Emitters emitters, const std::vec
     }
 }
 
-bool TargetChoice::hasOtherPoints(int index) const {
-    return index >= 0 && !scene_.emitters[size_t(index)].isDelta() && radii_[size_t(index)] > 0.0f;
+bool TargetChoice::hasOtherPoints(const PathTarget& target) const {
+    return target.u && target.index >= 0 && !target.emitter->isDelta() && radii_[size_t(target.index)] > 0.0f;
 }
 
 /// A lattice of rank 1: k / Points (1, 5) modulo 1.
@@ -42,15 +42,14 @@ Vec2f TargetChoice::otherPoint(const Vec2f& u, size_t k) {
     return {shifted(u.x, k), shifted(u.y, 5 * k)};
 }
 
-PathTarget TargetChoice::at(size_t index, const Vec2f& u) const {
+PathTarget TargetChoice::at(size_t index, const SurfaceSample& point) const {
     const Emitter& emitter = scene_.emitters[index];
-    const transport::Vertex point(scene_, emitter, sampleEmissionPoint(emitter, u));
-    return {{point, Rgb(1.0f / probability(index))},
+    return {{transport::Vertex(scene_, emitter, point), Rgb(1.0f / probability(index))},
             &emitter,
             int(index),
             choice(index),
             emitter.emissionTime,
-            u,
+            std::nullopt,
             radii_[index]};
 }
 

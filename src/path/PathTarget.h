@@ -27,7 +27,7 @@ struct PathTarget : transport::SubpathEnd {
     int index;                  ///< of the emitter; -1 for virtual sources, which cannot be hit
     EmitterChoice choice;       ///< of the emitter
     double start;               ///< when light leaves the vertex
-    Vec2f u{0.0f};              ///< random numbers that drew the point
+    std::optional<Vec2f> u;     ///< random numbers that drew the point; none: it has been met
     float emitterRadius = 0.0f; ///< distance from the vertex to the emitter's farthest point
     int interactions = 0;       ///< of the light's own path so far, the virtual source included
     int mediumScatters = 0;     ///< of these, in media
@@ -36,11 +36,14 @@ struct PathTarget : transport::SubpathEnd {
     [[nodiscard]] float pdfFrom(const Vec3f& receiver, const Vec3f& position, const Vec3f& ng) const {
         return index >= 0 ? choice.ofVertex * pdfDirect(*emitter, receiver, position, ng) : 0.0f;
     }
-    /// MIS weight of light that arrives at `receiver` from the target's vertex along the unit `direction`: the part
-    /// that is not left to paths that meet the emitter, if they leave in directions of this density.
-    [[nodiscard]] float shareOfConnection(const Vec3f& receiver, float ownPdf) const {
+    /// MIS weights of light that arrives at `receiver` from the target's vertex: the part that is not left to paths
+    /// that meet the emitter, if they leave in directions of this density. `overPlain`: how much denser connections are
+    /// than those of plain paths alone (StrategyBalance::overPlain).
+    [[nodiscard]] transport::TechniqueShares sharesOfConnection(const Vec3f& receiver, float ownPdf,
+                                                                float overPlain = 1.0f) const {
         const float pdf = pdfFrom(receiver, vertex.position(), vertex.margin().normal);
-        return pdf > 0.0f ? transport::powerHeuristic(pdf, ownPdf) : 1.0f;
+        if (!(pdf > 0.0f)) return {};
+        return {transport::powerHeuristic(pdf * overPlain, ownPdf), transport::powerHeuristic(pdf, ownPdf)};
     }
 };
 
@@ -67,11 +70,16 @@ class TargetChoice {
     [[nodiscard]] std::optional<PathTarget> of(size_t emitter, Sampler& sampler, const ProgressToken& watch,
                                                PathCounters& counters) const;
     /// The point of an emitter that these random numbers draw.
-    [[nodiscard]] PathTarget at(size_t emitter, const Vec2f& u) const;
-    /// An emitter whose points guided paths choose among; none for virtual sources (-1).
-    [[nodiscard]] bool hasOtherPoints(int emitter) const;
-    /// A lattice of so many points on the unit square, shifted modulo 1 until the k-th is the first one of another: all
-    /// of them have the same set of others. A choice among a set thus has a density that is known.
+    [[nodiscard]] PathTarget at(size_t emitter, const Vec2f& u) const {
+        PathTarget target = at(emitter, sampleEmissionPoint(scene_.emitters[emitter], u));
+        target.u = u;
+        return target;
+    }
+    [[nodiscard]] PathTarget at(size_t emitter, const SurfaceSample& point) const;
+    /// Guided paths choose among points of its emitter. Not for virtual sources.
+    [[nodiscard]] bool hasOtherPoints(const PathTarget& target) const;
+    /// The k-th of so many points of a lattice of rank 1 on the unit square that starts at u, modulo 1. From each of
+    /// them the lattice has the same points, so that a choice among these has a density that is known.
     static constexpr size_t Points = tuning::EntryPoints;
     [[nodiscard]] static Vec2f otherPoint(const Vec2f& u, size_t k);
     [[nodiscard]] std::optional<PathTarget> sample(float u, Sampler& sampler, const ProgressToken& watch,

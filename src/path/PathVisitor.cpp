@@ -106,16 +106,20 @@ bool PathVisitor<TimeResolved, Beside>::sharesWithConnections(const PathState& p
 }
 
 template <bool TimeResolved, typename Beside>
-float PathVisitor<TimeResolved, Beside>::shareOfMeeting(const PathState& path, int index, const SurfaceHit& hit) const {
-    const Emitter& emitter = scene().emitters[size_t(index)];
-    const bool shares = sharesWithConnections(path);
-    const float pdf = shares ? pdfDirect(emitter, path.last.position, hit.position, hit.ng) : 0.0f;
-    float probability = 0.0f;
-    if constexpr (Beside::Balanced)
-        probability = beside_.trail->targets().probability(size_t(index));
-    else
-        probability = context_->lights.probability(index);
-    return shares ? transport::powerHeuristic(path.last.pdf, pdf * probability) : 1.0f;
+transport::TechniqueShares PathVisitor<TimeResolved, Beside>::sharesOfMeeting(const PathState& path, int index,
+                                                                              const SurfaceHit& hit,
+                                                                              [[maybe_unused]] double time) const {
+    if (!sharesWithConnections(path)) return {};
+    const float direct = pdfDirect(scene().emitters[size_t(index)], path.last.position, hit.position, hit.ng);
+    if constexpr (Beside::Balanced) {
+        const float pdf = direct * beside_.trail->targets().probability(size_t(index));
+        const float alone = transport::powerHeuristic(path.last.pdf, pdf);
+        if (!fromMedium(path) || !(pdf > 0.0f)) return {alone, alone};
+        const float denser = beside_.trail->connectionsOverPlain(size_t(index), hit, time);
+        return {transport::powerHeuristic(path.last.pdf, pdf * denser), alone};
+    }
+    const float share = transport::powerHeuristic(path.last.pdf, direct * context_->lights.probability(index));
+    return {share, share};
 }
 
 template <bool TimeResolved, typename Beside>
@@ -128,13 +132,15 @@ void PathVisitor<TimeResolved, Beside>::addEmission(const PathState& path, const
     if (isBlack(radiance) || !limits().renders(path.interactions - 1) || !orderCounts(path)) return;
     const double time = path.time + emitter.emissionTime;
     if (Beside::Balanced && !sink_->mayCount(time)) return;
-    float weight = shareOfMeeting(path, index, hit);
+    const auto shares = sharesOfMeeting(path, index, hit, time);
+    float weight = shares.beside;
     if (weight == 0.0f) return;
     if (context_->refracted) weight *= refractedShare(index);
-    float logRatio = 0.0f;
+    LogRatio logRatio = 0.0f;
     if constexpr (Beside::Balanced) {
-        const bool aimedAt = beside_.trail->targets().probability(size_t(index)) > 0.0f;
-        logRatio = aimedAt ? beside_.trail->atLight(size_t(index), time) : StrategyBalance::Never;
+        const bool guided = !fromMedium(path) && beside_.trail->targets().probability(size_t(index)) > 0.0f;
+        logRatio = guided ? beside_.trail->atLight(size_t(index), time) : StrategyBalance::Never;
+        logRatio = logRatio.with(shares);
     }
     sink_->add(path.throughput * radiance * weight, time, emitter, logRatio, Found::OnWay);
 }
@@ -188,11 +194,15 @@ void PathVisitor<TimeResolved, Beside>::connectToTarget(const PathState& path, c
         connector_.connect(vertex, path.throughput, transport::connectionEndpoint(*way, target), counters_->shadowRays);
     if (!connection || !limits().renders(path.interactions + connection->crossings + target.interactions)) return;
     const double time = path.time + connection->time + target.start;
-    float weight = 1.0f, logRatio = 0.0f;
+    float weight = 1.0f;
+    LogRatio logRatio = 0.0f;
     if constexpr (Beside::Balanced) {
-        // Surfaces that shine can be met, too.
-        weight = target.shareOfConnection(path.ray.origin, vertex.pdf(way->direction));
         logRatio = beside_.trail->atVertex(emitter, time, connection->crossings == 0);
+        // Surfaces that shine can be met, too.
+        const float denser = vertex.surface() ? 1.0f : beside_.trail->connectionsOverPlain(emitter, time);
+        const auto shares = target.sharesOfConnection(path.ray.origin, vertex.pdf(way->direction), denser);
+        weight = shares.beside;
+        logRatio = logRatio.with(shares);
     }
     sink_->add(connection->throughput * weight, time, *target.emitter, logRatio, Found::OnWay);
 }

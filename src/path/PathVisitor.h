@@ -92,6 +92,10 @@ class PathVisitor : public transport::VisitorBase {
     [[nodiscard]] bool inExpectation(const PathState& path) const {
         return context_->lightsInView && path.last.kind == transport::LastVertex::Kind::Start;
     }
+    /// Guided paths beside this one do not count lights that they meet straight on from a vertex in a medium.
+    [[nodiscard]] static bool fromMedium(const PathState& path) {
+        return path.last.kind == transport::LastVertex::Kind::Medium;
+    }
     /// The present direction was drawn at a vertex that was connected to lights, too.
     [[nodiscard]] bool sharesWithConnections(const PathState& path) const;
     /// Whether light found from the path's vertex on can still arrive inside the gate.
@@ -107,8 +111,9 @@ class PathVisitor : public transport::VisitorBase {
     // Sealed bodies.
     /// From the vertex: a walk that aims at an emitter through a face.
     void aimThroughWall(const PathState& path, const auto& steps, const Medium& medium) const;
-    /// MIS weight of light of an emitter that is met: the part that is not left to connections.
-    [[nodiscard]] float shareOfMeeting(const PathState& path, int emitter, const SurfaceHit& hit) const;
+    /// MIS weights of light of an emitter that is met at this time: the part that is not left to connections.
+    [[nodiscard]] transport::TechniqueShares sharesOfMeeting(const PathState& path, int emitter, const SurfaceHit& hit,
+                                                             double time) const;
     /// MIS weight of light of an emitter that is met: the part that is not left to the other way of finding the same
     /// path.
     [[nodiscard]] float refractedShare(int emitter) const;

@@ -51,8 +51,19 @@ auto PlainTrail::follower(size_t emitter, size_t window) -> Follower& {
 
 auto PlainTrail::now(size_t emitter, size_t window) -> const Logs& {
     Follower& follower = this->follower(emitter, window);
-    while (follower.next < record_.size()) follow(follower, follower.next++);
+    followUntil(follower, record_.size());
     return follower.logs;
+}
+
+float PlainTrail::connectionsOverPlain(size_t emitter, const SurfaceHit& met, double time) {
+    size_t flights = record_.size();
+    while (flights > 0 && !record_[flights - 1].medium) --flights;
+    Follower follower;
+    follower.steps.emplace(*context_, *counters_,
+                           targets_->at(emitter, SurfaceSample{met.position, met.ng, met.uv, met.error, met.index()}),
+                           context_->windows.indexOf(time));
+    followUntil(follower, flights);
+    return follower.steps->connectionsOverPlain(follower.logs.ending);
 }
 
 void PlainTrail::pass(Follower& follower, const Step& step) {

@@ -43,6 +43,14 @@ class PlainTrail {
         const Logs& logs = now(emitter, window);
         return (open ? logs.openEnding : logs.ending) + logOf(window);
     }
+    /// How densely both strategies connect that vertex, in a medium, over plain paths alone.
+    [[nodiscard]] float connectionsOverPlain(size_t emitter, double time) {
+        const size_t window = context_->windows.indexOf(time);
+        const float logRatio = now(emitter, window).ending;
+        return follower(emitter, window).steps->connectionsOverPlain(logRatio);
+    }
+    /// And the last one in a medium, to the point of an emitter that has been met straight on from there.
+    [[nodiscard]] float connectionsOverPlain(size_t emitter, const SurfaceHit& met, double time);
     /// Logarithm for the way up to there, of paths that aim at the first window.
     [[nodiscard]] float there(size_t emitter) { return now(emitter, 0).there; }
     /// With light that the flight at hand has met: guided paths count it if it is their target's.
@@ -70,6 +78,10 @@ class PlainTrail {
     };
 
     [[nodiscard]] Follower& follower(size_t emitter, size_t window);
+    /// Up to the flight before this one.
+    void followUntil(Follower& follower, size_t flights) {
+        while (follower.next < flights) follow(follower, follower.next++);
+    }
     /// Logarithms of the last step, after it has been followed.
     [[nodiscard]] const Logs& now(size_t emitter, size_t window);
     [[nodiscard]] float logOf(size_t window) const { return std::log(context_->windows[window].probability); }

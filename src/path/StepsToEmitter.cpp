@@ -175,7 +175,7 @@ void StepsToEmitter::choosePoint(PathState& path, Asks asks) {
     if (!guided_->escapeModels->isBounded(path.region.medium, target_.emitter->medium)) return;
     const PathTarget given = target_;
     const auto other = [&](size_t k) {
-        return guided_->targets->at(size_t(given.index), TargetChoice::otherPoint(given.u, k));
+        return guided_->targets->at(size_t(given.index), TargetChoice::otherPoint(*given.u, k));
     };
     std::array<float, Points> odds; // against those that every point has without a choice
     for (size_t k = 0; k < Points; ++k) {
@@ -195,7 +195,8 @@ void StepsToEmitter::choosePoint(PathState& path, Asks asks) {
     }
     path.throughput = path.throughput / odds[chosen];
     target_ = chosen == 0 ? given : other(chosen);
-    if (hasDensities()) path.logRatio += std::log(odds[chosen]);
+    logOfPoint_ = std::log(odds[chosen]);
+    if (hasDensities()) path.logRatio += logOfPoint_;
     setTimeBudgetFrom(path, path.ray.origin);
 }
 

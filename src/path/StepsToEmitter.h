@@ -78,7 +78,7 @@ class StepsToEmitter : public transport::GuidedSteps {
     /// Light of the target is looked for in this window of time.
     StepsToEmitter(const GuidedContext& guided, PathCounters& counters, const PathTarget& target, size_t window = 0)
         : context_{guided.scene, counters, guided.watch}, guided_(&guided), target_(target), window_(window),
-          choosesPoint_(guided.targets && guided.escapeModels && guided.targets->hasOtherPoints(target.index)) {}
+          choosesPoint_(guided.targets && guided.escapeModels && guided.targets->hasOtherPoints(target)) {}
     [[nodiscard]] const transport::WalkContext& context() const { return context_; }
 
     transport::Ahead ahead(PathState& path) { return ahead(path, Asks::Path, nullptr); }
@@ -114,6 +114,11 @@ class StepsToEmitter : public transport::GuidedSteps {
     [[nodiscard]] ShellChord controlChord(const Ray& ray, const Region& region, float surface) const;
 
     [[nodiscard]] const PathTarget& target() const { return target_; }
+    /// How much denser guided paths connect a vertex in a medium than plain ones, with so much in all, and both
+    /// together than plain paths alone. The choice among points is left out: it is not a function of the path.
+    [[nodiscard]] float connectionsOverPlain(float logRatio) const {
+        return guided_->balance.overPlain(logRatio - logOfPoint_ + std::log(window().probability));
+    }
     [[nodiscard]] const transport::TimeWindow& window() const { return guided_->windows[window_]; }
     [[nodiscard]] const darts::Guide& guideOf(const Region& region) const {
         return guided_->guides.media[size_t(region.medium)];
@@ -152,11 +157,11 @@ class StepsToEmitter : public transport::GuidedSteps {
     transport::Ahead ahead(PathState& path, Asks asks, const SurfaceHit* known);
     transport::Ahead aheadInEmpty(PathState& path, const Medium* medium, const SurfaceHit* known);
     transport::Ahead aheadInMedium(PathState& path, const Medium& medium, Asks asks, const SurfaceHit* known);
-    /// Where light must get out of the medium ahead: the target becomes one of a set of its emitter's points
-    /// (TargetChoice::otherPoint), by how much of their light may be in time. Density: p(u) = M w(u) / sum over the
-    /// set.
+    /// Where light must get out of the medium ahead: the target becomes one of M points of its emitter
+    /// (TargetChoice::otherPoint) by the light w that each may bring in time, or in one case of M stays. Density of the
+    /// random numbers of the point: p(u) = 1 / M + (M - 1) w(u) / sum of w.
     void choosePoint(PathState& path, Asks asks);
-    /// Logarithm of what the target brings to the ray's origin.
+    /// Logarithm of the light that the target may bring to the ray's origin in time.
     [[nodiscard]] float logImportanceOfTarget(const PathState& path);
     transport::Ahead aheadUntimed(PathState& path, const Medium& medium, const SurfaceHit* known);
     /// The surface ahead, up to the end of the ray.
@@ -209,6 +214,7 @@ class StepsToEmitter : public transport::GuidedSteps {
     const GuidedContext* guided_;
     PathTarget target_;
     size_t window_;
+    float logOfPoint_ = 0.0f; ///< logarithm of how much likelier the choice among points has made the target
     bool choosesPoint_; ///< where a scattering medium is met first; until then no step asks where the target's point is
     bool startsAnew_ = true; ///< the ray ahead has not been looked along
     Passage passage_ = Passage::Empty;

@@ -40,6 +40,11 @@ inline float logOfQuotient(float density, float over = 1.0f) {
     return std::log(std::clamp(std::max(density, Least) / std::max(over, Least), Least, Most));
 }
 
+/// MIS weights of one of several techniques of the same paths: beside guided ones, and where all are plain.
+struct TechniqueShares {
+    float beside = 1.0f, alone = 1.0f;
+};
+
 /// How densely guided paths find what one has found, over plain ones; logarithms.
 struct LogRatio {
     float weighed;         ///< as both strategies weigh it: StrategyBalance
@@ -49,7 +54,18 @@ struct LogRatio {
     LogRatio(float exact) : weighed(exact), plainToEstimate(exact) {} // NOLINT(google-explicit-constructor)
     LogRatio(float asWeighed, float ofPlain) : weighed(asWeighed), plainToEstimate(ofPlain) {}
     /// Where a part of the guided paths alone may find it, the logarithm of which this is.
-    [[nodiscard]] LogRatio plus(float logOfPart) const { return {weighed + logOfPart, plainToEstimate + logOfPart}; }
+    [[nodiscard]] LogRatio plus(float logOfPart) const {
+        LogRatio sum{weighed + logOfPart, plainToEstimate + logOfPart};
+        sum.shareAlone = shareAlone;
+        return sum;
+    }
+    [[nodiscard]] LogRatio with(const TechniqueShares& shares) const {
+        LogRatio same = *this;
+        same.shareAlone = shares.alone / shares.beside;
+        return same;
+    }
+
+    float shareAlone = 1.0f; ///< of the technique, where all paths are plain, over that beside guided ones
 };
 
 /// Where a contribution was found: at a vertex that its path has gone on from, or beside the path's way, where guided
@@ -70,6 +86,13 @@ struct StrategyBalance {
     }
     [[nodiscard]] float weightOfGuided(float logRatio) const {
         return 1.0f / (plain * std::exp(std::min(-logRatio, Most)) + guided);
+    }
+    /// How densely both find what guided paths find so densely, over plain paths alone; at least 1. Techniques that
+    /// guided paths take share with others by it, and then bring no more than they or the others where all are plain.
+    /// Bounded: shares that squares of it are left with stay floats.
+    [[nodiscard]] float overPlain(float logRatio) const {
+        constexpr float MostLog = 16.0f;
+        return std::max(plain + guided * std::exp(std::min(logRatio, MostLog)), 1.0f);
     }
     [[nodiscard]] float weight(Strategy strategy, float logRatio) const {
         if (strategy == Strategy::Alone) return 1.0f;

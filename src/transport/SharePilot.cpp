@@ -20,8 +20,11 @@ double PathCosts::mean(const StrategyBalance& balance) const {
 
 double SharePilot::weighed(const Contribution& contribution, Strategy strategy, const StrategyBalance& balance) const {
     const auto value = double(contribution.value);
-    if (strategy == Strategy::Guided && balance.guided == 0.0f)
-        return value * std::exp(std::min(double(contribution.logRatio.plainToEstimate), 80.0));
+    if (balance.guided == 0.0f) {
+        const double ofPlain = value * double(contribution.logRatio.shareAlone);
+        if (strategy == Strategy::Plain) return ofPlain;
+        return ofPlain * std::exp(std::min(double(contribution.logRatio.plainToEstimate), 80.0));
+    }
     return value * double(balance.weight(strategy, contribution.logRatio.weighed));
 }
 
@@ -88,12 +91,13 @@ auto SharePilot::momentsByPixel(const StrategyBalance& balance) const -> std::ve
         before.clear();
         if (i % PathsOfPixel == 0) halves.clear();
         for (size_t k = paths_[i].first; k < end(i); ++k) {
+            const double share = balance.guided == 0.0f ? double(found_[k].logRatio.shareAlone) : 1.0;
             const double here = weighed(found_[k], strategy, Halves), there = weighed(found_[k], strategy, balance);
             Before& frame = before[found_[k].frame];
             const double inPairs = balance.guided > 0.0f                             ? here
                                    : alone == nullptr && strategy == Strategy::Plain ? there / double(Halves.plain)
                                                                                      : 0.0;
-            pixel.second += here * there + 2.0 * inPairs * frame.onWay + 2.0 * there * frame.aside;
+            pixel.second += share * here * there + 2.0 * inPairs * frame.onWay + 2.0 * there * frame.aside;
             if (found_[k].found == Found::OnWay)
                 frame.onWay += there;
             else
@@ -130,7 +134,8 @@ double SharePilot::ownSecondMoment(Strategy strategy) const {
         if (paths_[i].strategy != strategy) continue;
         paths += 1.0;
         frames.clear();
-        for (size_t k = paths_[i].first; k < end(i); ++k) frames[found_[k].frame] += double(found_[k].value);
+        for (size_t k = paths_[i].first; k < end(i); ++k)
+            frames[found_[k].frame] += double(found_[k].value) * double(found_[k].logRatio.shareAlone);
         for (const auto& [frame, sum] : frames) squares += sum * sum;
     }
     return paths > 0.0 ? squares / paths : 0.0;

@@ -302,7 +302,7 @@ FAULTS = [
      [("path_tests", "Energy.MediumLimitsStartAnewAtSurfaces")]),  # max_bounces of media counts on across surfaces: paths end early
     ("src/path/PathVisitor.cpp", "(phase * drawn->weight * share / density)", "(phase * drawn->weight / density)",
      [("path_tests", "RefractiveConnections.AgreesBesideAWideLamp")]),  # light through refracting walls is counted twice
-    ("src/path/PathVisitor.cpp", "pdfDirect(emitter, path.last.position, hit.position, hit.ng)", "pdfDirect(emitter, hit.position, path.last.position, hit.ng)",
+    ("src/path/PathVisitor.cpp", "pdfDirect(scene().emitters[size_t(index)], path.last.position, hit.position, hit.ng)", "pdfDirect(scene().emitters[size_t(index)], hit.position, path.last.position, hit.ng)",
      [("path_tests", "SpecularTime.UnwarpedFogShowsInAMirrorFarFromTheLight")]),  # swapped ends: emitters that are met get the wrong share
     ("src/path/PathVisitor.cpp", "limits().renders(path.interactions + connection->crossings + target.interactions)", "limits().renders(path.interactions + connection->crossings)",
      [("path_tests", "Bounces.WhatALaser*")]),  # min_bounces and max_bounces do not count a laser's own path
@@ -324,8 +324,14 @@ FAULTS = [
      [("transport_tests", "Scripted.EndsWhereAHookSaysSo")]),  # limits of flights do not end a walk
     ("src/path/StepsToEmitter.cpp", "path.channels = plain.channels;", ";",
      [("path_tests", "PlainTrail.*")]),  # densities of channels stand still on guided paths
-    ("src/path/PathVisitor.cpp", "weight = target.shareOfConnection(path.ray.origin, vertex.pdf(way->direction));", ";",
+    ("src/path/PathVisitor.cpp", "weight = shares.beside;\n        logRatio", "logRatio",
      [("path_tests", "Scenes/Balanced.MeansAreTheSameAtAnyShare/LampMetAndConnectedTo")]),  # lamps that are met and connected to count twice
+    ("src/path/PathVisitor.cpp", "powerHeuristic(path.last.pdf, pdf * denser), alone", "powerHeuristic(path.last.pdf, pdf * std::min(denser, 1.0f)), alone",
+     [("path_tests", "Scenes/Balanced.MeansAreTheSameAtAnyShare/LargeLamp:Scenes/Balanced.MeansAreTheSameAtAnyShare/LampMetAndConnectedTo")]),  # lights that are met do not know how densely guided paths connect
+    ("src/path/StepsToEmitter.h", "overPlain(logRatio - logOfPoint_ + ", "overPlain(logRatio + ",
+     [("path_tests", "PlainTrail.*")]),  # shares depend on what points of a lamp there were to choose
+    ("src/transport/SharePilot.cpp", "value * double(contribution.logRatio.shareAlone);", "value;",
+     [("path_tests", "SharePilot.ConnectionsOfBothShareWithLightsThatAreMet")]),  # pilot takes plain paths alone to share as beside guided ones
     ("src/transport/Balance.h", "return 1.0f / (plain + guided * std::exp(std::min(logRatio, Most)));", "return 1.0f / plain;",
      [("path_tests", "StrategyBalance.WeightsOfBothAddUpToTheContributionOverBothDensities:Scenes/Balanced.*")]),  # plain paths bring all of what both find
     ("src/transport/Balance.h", "return 1.0f / (plain * std::exp(std::min(-logRatio, Most)) + guided);", "return 1.0f / guided;",
@@ -336,7 +342,7 @@ FAULTS = [
      [("path_tests", "PlainTrail.*")]),  # guided flights are twice as dense as they are
     ("src/path/StepsToEmitter.cpp", "path.throughput = path.throughput / odds[chosen];", ";",
      [("path_tests", "Bodies.UnderALampInGatesOfAnyWidth")]),  # points of lamps that are chosen often bring too much
-    ("src/path/StepsToEmitter.cpp", "if (hasDensities()) path.logRatio += std::log(odds[chosen]);", ";",
+    ("src/path/StepsToEmitter.cpp", "path.logRatio += logOfPoint_;", ";",
      [("path_tests", "PlainTrail.DensitiesOfPointsAreThoseTheyAreChosenBy")]),  # plain paths take points of lamps for chosen evenly
     ("src/transport/SharePilot.cpp", "pixel.second += double(PathsOfPixel) * alone->sum", "pixel.second += alone->sum",
      [("path_tests", "SharePilot.KnowsPlainPathsAsTheyAreAlone")]),  # plain paths alone vary less than they do

@@ -20,7 +20,11 @@ class Replay : public transport::VisitorBase {
            const PathTarget& target, const Sampler& light)
         : context_(&context) {
         emitter_ = size_t(target.index);
-        point_ = target.u;
+        point_ = *target.u;
+        const SurfaceMargin margin = target.vertex.margin();
+        met_.position = target.vertex.position();
+        met_.ng = margin.normal;
+        met_.error = margin.error;
         trail_.start(context, targets, sink, counters, light);
     }
 
@@ -46,6 +50,12 @@ class Replay : public transport::VisitorBase {
         const float tolerance = 1e-4f * float(1 + path.interactions) * (1.0f + std::abs(path.logRatio));
         EXPECT_NEAR(trail_.atVertex(emitter_, 0.0, false), ending, tolerance) << path.interactions;
         EXPECT_NEAR(trail_.there(emitter_), path.logRatio, tolerance) << path.interactions;
+        // Met, the target is connected to as densely; where guided paths nearly always have ended, nothing counts.
+        if (collided && path.logRatio > -6.0f) {
+            EXPECT_NEAR(std::log(trail_.connectionsOverPlain(emitter_, met_, 0.0)),
+                        std::log(trail_.connectionsOverPlain(emitter_, 0.0)), tolerance)
+                << path.interactions;
+        }
         ++compared;
         largest = std::max(largest, std::abs(path.logRatio));
         return true;
@@ -64,6 +74,7 @@ class Replay : public transport::VisitorBase {
     PlainTrail trail_; ///< a value: copies of a path that is split have one each
     size_t emitter_ = 0;
     Vec2f point_;
+    SurfaceHit met_; ///< the target
     ChannelDensities before_{1.0f};
 };
 
@@ -164,13 +175,13 @@ TEST(PlainTrail, DensitiesOfPointsAreThoseTheyAreChosenBy) {
         const float before = path.logRatio;
         if (guides) {
             steps.ahead(path);
-            chosen[square(steps.target().u)] += 1.0;
+            chosen[square(*steps.target().u)] += 1.0;
         } else {
             steps.ahead(path, nullptr);
             ASSERT_EQ(steps.target().u, target->u);
             const double density = std::exp(double(path.logRatio - before));
-            expected[square(target->u)] += density;
-            squares[square(target->u)] += density * density;
+            expected[square(*target->u)] += density;
+            squares[square(*target->u)] += density * density;
         }
     }
     double chi2 = 0.0, least = Paths, most = 0.0;

@@ -20,15 +20,17 @@ void ConnectionsFromMedia::connect(const GuidedPath& path, const Medium& medium,
     const auto connection = path.connector().connect(
         vertex, state.throughput, transport::connectionEndpoint(*way, path.target()), path.counters.shadowRays);
     if (!connection || !path.counts(connection->crossings, 0)) return;
-    const float share = (connection->oneSpeed ? 1.0f - controlShare : 1.0f) *
-                        ConnectionsFromMedia::share(path, state.ray.origin, vertex.pdf(way->direction));
+    const auto shares = ConnectionsFromMedia::shares(path, state.ray.origin, vertex.pdf(way->direction), ending);
+    const float share = (connection->oneSpeed ? 1.0f - controlShare : 1.0f) * shares.beside;
     if (share > 0.0f)
         path.sink.add(connection->throughput * share, state.time + connection->time + path.target().start,
-                      *path.target().emitter, ending.logRatio, Found::OnWay);
+                      *path.target().emitter, LogRatio(ending.logRatio).with(shares), Found::OnWay);
 }
 
-float ConnectionsFromMedia::share(const GuidedPath& path, const Vec3f& position, float pdf) {
-    return path.steps.hasDensities() ? path.target().shareOfConnection(position, pdf) : 1.0f;
+transport::TechniqueShares ConnectionsFromMedia::shares(const GuidedPath& path, const Vec3f& position, float pdf,
+                                                        const StepsToEmitter::InMedium& ending) {
+    if (!path.steps.hasDensities()) return {};
+    return path.target().sharesOfConnection(position, pdf, path.steps.connectionsOverPlain(ending.logRatio));
 }
 
 void ConnectionsFromSurfaces::connect(const GuidedPath& path, const SurfaceHit& hit, const Rgb& throughput) {
@@ -43,7 +45,7 @@ void ConnectionsFromSurfaces::connect(const GuidedPath& path, const SurfaceHit& 
                                                      path.counters.shadowRays);
     if (!connection || !path.counts(1 + connection->crossings, 0)) return;
     // Weights by the surface's own density, which, unlike the guided one, is a function of the path alone.
-    const float weight = target.shareOfConnection(hit.position, vertex.pdf(way->direction));
+    const float weight = target.sharesOfConnection(hit.position, vertex.pdf(way->direction)).alone;
     const float share = connection->crossings == 0 ? shareOfWalk(path, vertex, hit.t, *way) : 1.0f;
     LogRatio logRatio = path.steps.logRatioOnSurface();
     if (share < 1.0f)
@@ -73,12 +75,11 @@ void EmittersMet::add(const GuidedPath& path, const SurfaceHit& hit, const Rgb& 
     const PathTarget& target = path.target();
     if (target.index < 0 || path.scene().primitives[hit.shape].emitter != target.index) return;
     using Kind = transport::LastVertex::Kind;
-    if ((path.state.last.kind == Kind::Medium && !path.steps.hasDensities()) || !path.counts(0, 0))
-        return; // connections from media find it
+    if (path.state.last.kind == Kind::Medium || !path.counts(0, 0)) return;
     const Rgb radiance = emittedRadiance(*target.emitter, hit.uv, hit.ng, -path.state.ray.direction);
     if (isBlack(radiance)) return;
     float weight = 1.0f;
-    if (path.state.last.kind == Kind::Surface || path.state.last.kind == Kind::Medium)
+    if (path.state.last.kind == Kind::Surface)
         weight =
             transport::powerHeuristic(density(path), target.pdfFrom(path.state.last.position, hit.position, hit.ng));
     path.sink.add(throughput * radiance * (weight / target.choice.ofPath), path.state.timeAfter(hit.t) + target.start,

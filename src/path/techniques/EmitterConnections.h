@@ -11,8 +11,9 @@ namespace tungsten::path {
 struct ConnectionsFromMedia {
     /// From the ray's origin, less the share of control vertices.
     static void connect(const GuidedPath& path, const Medium& medium, const StepsToEmitter::InMedium& ending);
-    /// The part of connections that is not left to emitters that are met; `pdf` is the phase function's.
-    [[nodiscard]] static float share(const GuidedPath& path, const Vec3f& position, float pdf);
+    /// The part of connections that is not left to emitters that plain paths meet; `pdf` is the phase function's.
+    [[nodiscard]] static transport::TechniqueShares shares(const GuidedPath& path, const Vec3f& position, float pdf,
+                                                           const StepsToEmitter::InMedium& ending);
     /// Per length, for weights, of the walk's flights that end at `distance`.
     [[nodiscard]] static float density(const Medium& medium, float distance) {
         return transport::pdfFreeFlight(meanComponent(medium.sigmaT()), distance);
@@ -31,7 +32,7 @@ struct ConnectionsFromSurfaces {
     [[nodiscard]] static float density(const GuidedPath& path, const transport::Vertex& vertex, float length);
 };
 
-/// Emitters that the walk meets.
+/// Emitters that the walk meets, from surfaces: those that it meets from media plain paths beside it meet.
 struct EmittersMet {
     /// Light that the surface at the end of the ray emits, if it is the target's; `throughput` includes the way there.
     static void add(const GuidedPath& path, const SurfaceHit& hit, const Rgb& throughput);
