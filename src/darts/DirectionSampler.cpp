@@ -23,7 +23,8 @@ EscapeDirections::EscapeDirections(const TimeBudget& budget, float excess, const
     const FirstPassage passage(medium, budget.escape);
     const EscapePoint<float> here{budget.escape, budget.latest(0.0f), budget.axis, 0.0f};
     if (budget.escape.straightExit) {
-        const float gate = std::max(budget.escape.gate, 1e-6f * budget.C) * mean(medium.sigmaS);
+        const float reachable = here.to(budget.escape.faces[0]).reachable,
+                    gate = std::max(reachable, 1e-6f * budget.C) * mean(medium.sigmaS);
         const float transmittance = -mean(medium.sigmaT()) * (budget.escape.inside + excess);
         const float log = std::min(transmittance - passage.log(here), MostLog);
         share_ = std::min(MostConnectionShare, gate * std::exp(log));

@@ -29,8 +29,8 @@ FirstPassage::Slopes FirstPassage::slopes(const EscapePoint<float>& at, const Ve
     for (size_t i = 0; i < exit_.sides.size(); i += 2) {
         const EscapeGeometry::Side &a = exit_.sides[i], &b = exit_.sides[i + 1], &side = a.outside > b.outside ? a : b;
         if (side.outside > 0.0f)
-            slopes.pull =
-                slopes.pull - side.normal * (2.0f * side.outside * fourthInverseD_ / (at.excess + meanFreePath_));
+            slopes.pull = slopes.pull - side.normal * (2.0f * side.outside * fourthInverseD_ /
+                                                       (std::max(at.excess, 0.0f) + meanFreePath_));
     }
     return slopes;
 }

@@ -18,7 +18,7 @@ struct EscapePoint {
     float persistenceLength; ///< 0: light leaves evenly in all directions
     Batch d;                 ///< along the flight
     Batch rho;               ///< from the target
-    Batch excess;            ///< longest connection in time, over rho
+    Batch excess;            ///< longest connection in time, over rho; negative where only what is faster outside is
     Batch squaredOutside;    ///< distance from what lies inside all sides, squared
 
     /// At the distance `along`; `latest` is of the latest arrival.
@@ -29,7 +29,7 @@ struct EscapePoint {
         using std::sqrt;
         const Batch toCentre = d - latest.C, left = (2.0f * latest.denominator()) * (latest.firstLeg() - d);
         rho = sqrt(toCentre * toCentre + (2.0f * latest.C * latest.h) * d);
-        excess = max(Batch(left / (latest.length() - d + rho) - exit.extraLength), Batch(0.0f));
+        excess = left / (latest.length() - d + rho) - exit.extraLength;
         for (size_t i = 0; i < exit.sides.size(); i += 2) {
             const EscapeGeometry::Side &a = exit.sides[i], &b = exit.sides[i + 1];
             const Batch beside =
@@ -49,15 +49,17 @@ struct EscapePoint {
         Batch depth = max(Batch(face.depth - d * cosine), Batch(0.0f));
         // The target is `outside` away from the foot on the boundary: rho - outside without a difference of lengths.
         const Batch above = depth * (depth + 2.0f * face.height), outside = sqrt(max(rho * rho - above, Batch(0.0f)));
-        const Batch longest =
-            max(Batch(excess + above / (rho + outside) - (exit.outerSpeed - 1.0f) * outside), Batch(0.0f));
+        // By how much the length outside counts for more than at the body's speed. What is left is never below 0, as
+        // importance is not 0 where only the extra length allows an arrival.
+        const Batch slower = (exit.outerSpeed - 1.0f) * outside;
+        const Batch left = max(Batch(excess - min(slower, Batch(0.0f))), Batch(0.0f));
+        const Batch longest = max(Batch(left - max(slower, Batch(0.0f)) + above / (rho + outside)), Batch(0.0f));
         if (persistenceLength > 0.0f) { // mean displacement of persistent walks (Fuerth 1920)
             const Batch onward = persistenceLength * (1.0f - lanes::exp(Batch(longest * (-1.0f / persistenceLength))));
             depth = max(Batch(depth - cosine * onward), Batch(0.0f));
         }
-        // At least 1 % of the gate counts as reachable, so that importance is never 0 where only the extra length
-        // allows an arrival.
-        return {depth, longest, min(max(excess, Batch(0.01f * exit.gate)), min(longest, Batch(exit.gate)))};
+        // And at least 1 % of the gate as reachable.
+        return {depth, longest, min(max(left, Batch(0.01f * exit.gate)), min(longest, Batch(exit.gate)))};
     }
 };
 
@@ -95,7 +97,7 @@ class FirstPassage {
             const Batch other = through(face, at.to(face), otherFactor);
             add(other, otherFactor, exponent, factor);
         }
-        exponent = exponent - at.squaredOutside * fourthInverseD_ / (at.excess + meanFreePath_);
+        exponent = exponent - at.squaredOutside * fourthInverseD_ / (max(at.excess, Batch(0.0f)) + meanFreePath_);
         return exponent;
     }
     /// Its logarithm, never below that of 1e-37.

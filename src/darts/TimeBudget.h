@@ -64,6 +64,7 @@ struct TimeBudget {
         r.low = float(low);
         r.width = float(range.high - C - low);
         r.shortest = C + low;
+        r.escape.gate = float(range.high - std::max(range.low, 0.0));
         return r;
     }
     /// For sensors whose clock stops at the last scattering: its distance along the ray alone must lie in the range.

@@ -28,7 +28,7 @@ ArrivalBound::Source ArrivalBound::merged(const std::vector<Source>& sources) {
 
 ArrivalBound::ArrivalBound(const Scene& scene, const SceneFacts& facts)
     : bounds_(transport::RecordingDelays::of(scene).arrivals(scene.transport.gate), facts),
-      highestSpeed_(facts.highestSpeed) {
+      highestSpeed_(facts.highestSpeed), surfacesTurn_(facts.surfaceScattering || facts.specularCameraSubpaths) {
     // Environments never arrive; single directions are never found.
     for (size_t i = 0; i < scene.emitters.size(); ++i) {
         const Emitter& emitter = scene.emitters[i];

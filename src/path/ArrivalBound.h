@@ -26,6 +26,8 @@ class ArrivalBound {
     /// Highest speed of light anywhere on a path.
     [[nodiscard]] float highestSpeed() const { return highestSpeed_; }
     [[nodiscard]] bool oneSpeed() const { return bounds_.oneSpeed(); }
+    /// Some surface scatters, reflects or refracts: paths that come from there count lights that they meet.
+    [[nodiscard]] bool surfacesTurn() const { return surfacesTurn_; }
 
   private:
     /// Emitters within `radius` of `centre` (rounding of coordinates included), the first pulse at `emissionTime`.
@@ -40,6 +42,7 @@ class ArrivalBound {
     std::vector<Source> sources_; ///< a few: many emitters are merged into one
     transport::GateBounds bounds_;
     float highestSpeed_ = 1.0f;
+    bool surfacesTurn_ = true;
 };
 
 } // namespace tungsten::path

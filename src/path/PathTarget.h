@@ -36,14 +36,14 @@ struct PathTarget : transport::SubpathEnd {
     [[nodiscard]] float pdfFrom(const Vec3f& receiver, const Vec3f& position, const Vec3f& ng) const {
         return index >= 0 ? choice.ofVertex * pdfDirect(*emitter, receiver, position, ng) : 0.0f;
     }
-    /// MIS weights of light that arrives at `receiver` from the target's vertex: the part that is not left to paths
+    /// MIS weight of light that arrives at `receiver` from the target's vertex: the part that is not left to paths
     /// that meet the emitter, if they leave in directions of this density. `overPlain`: how much denser connections are
     /// than those of plain paths alone (StrategyBalance::overPlain).
-    [[nodiscard]] transport::TechniqueShares sharesOfConnection(const Vec3f& receiver, float ownPdf,
-                                                                float overPlain = 1.0f) const {
+    [[nodiscard]] transport::TechniqueShare shareOfConnection(const Vec3f& receiver, float ownPdf,
+                                                              float overPlain = 1.0f) const {
         const float pdf = pdfFrom(receiver, vertex.position(), vertex.margin().normal);
         if (!(pdf > 0.0f)) return {};
-        return {transport::powerHeuristic(pdf * overPlain, ownPdf), transport::powerHeuristic(pdf, ownPdf)};
+        return transport::TechniqueShare::of({pdf, ownPdf}, {pdf * overPlain, ownPdf});
     }
 };
 

@@ -106,20 +106,18 @@ bool PathVisitor<TimeResolved, Beside>::sharesWithConnections(const PathState& p
 }
 
 template <bool TimeResolved, typename Beside>
-transport::TechniqueShares PathVisitor<TimeResolved, Beside>::sharesOfMeeting(const PathState& path, int index,
-                                                                              const SurfaceHit& hit,
-                                                                              [[maybe_unused]] double time) const {
+transport::TechniqueShare PathVisitor<TimeResolved, Beside>::shareOfMeeting(const PathState& path, int index,
+                                                                            const SurfaceHit& hit,
+                                                                            [[maybe_unused]] double time) const {
     if (!sharesWithConnections(path)) return {};
     const float direct = pdfDirect(scene().emitters[size_t(index)], path.last.position, hit.position, hit.ng);
     if constexpr (Beside::Balanced) {
         const float pdf = direct * beside_.trail->targets().probability(size_t(index));
-        const float alone = transport::powerHeuristic(path.last.pdf, pdf);
-        if (!fromMedium(path) || !(pdf > 0.0f)) return {alone, alone};
-        const float denser = beside_.trail->connectionsOverPlain(size_t(index), hit, time);
-        return {transport::powerHeuristic(path.last.pdf, pdf * denser), alone};
+        const float denser =
+            fromMedium(path) && pdf > 0.0f ? beside_.trail->connectionsOverPlain(size_t(index), hit, time) : 1.0f;
+        return transport::TechniqueShare::of({path.last.pdf, pdf}, {path.last.pdf, pdf * denser});
     }
-    const float share = transport::powerHeuristic(path.last.pdf, direct * context_->lights.probability(index));
-    return {share, share};
+    return {transport::powerHeuristic(path.last.pdf, direct * context_->lights.probability(index))};
 }
 
 template <bool TimeResolved, typename Beside>
@@ -132,15 +130,15 @@ void PathVisitor<TimeResolved, Beside>::addEmission(const PathState& path, const
     if (isBlack(radiance) || !limits().renders(path.interactions - 1) || !orderCounts(path)) return;
     const double time = path.time + emitter.emissionTime;
     if (Beside::Balanced && !sink_->mayCount(time)) return;
-    const auto shares = sharesOfMeeting(path, index, hit, time);
-    float weight = shares.beside;
+    const auto share = shareOfMeeting(path, index, hit, time);
+    float weight = share.beside;
     if (weight == 0.0f) return;
     if (context_->refracted) weight *= refractedShare(index);
     LogRatio logRatio = 0.0f;
     if constexpr (Beside::Balanced) {
         const bool guided = !fromMedium(path) && beside_.trail->targets().probability(size_t(index)) > 0.0f;
         logRatio = guided ? beside_.trail->atLight(size_t(index), time) : StrategyBalance::Never;
-        logRatio = logRatio.with(shares);
+        logRatio = logRatio.with(share);
     }
     sink_->add(path.throughput * radiance * weight, time, emitter, logRatio, Found::OnWay);
 }
@@ -200,9 +198,9 @@ void PathVisitor<TimeResolved, Beside>::connectToTarget(const PathState& path, c
         logRatio = beside_.trail->atVertex(emitter, time, connection->crossings == 0);
         // Surfaces that shine can be met, too.
         const float denser = vertex.surface() ? 1.0f : beside_.trail->connectionsOverPlain(emitter, time);
-        const auto shares = target.sharesOfConnection(path.ray.origin, vertex.pdf(way->direction), denser);
-        weight = shares.beside;
-        logRatio = logRatio.with(shares);
+        const auto share = target.shareOfConnection(path.ray.origin, vertex.pdf(way->direction), denser);
+        weight = share.beside;
+        logRatio = logRatio.with(share);
     }
     sink_->add(connection->throughput * weight, time, *target.emitter, logRatio, Found::OnWay);
 }

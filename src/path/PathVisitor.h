@@ -111,9 +111,9 @@ class PathVisitor : public transport::VisitorBase {
     // Sealed bodies.
     /// From the vertex: a walk that aims at an emitter through a face.
     void aimThroughWall(const PathState& path, const auto& steps, const Medium& medium) const;
-    /// MIS weights of light of an emitter that is met at this time: the part that is not left to connections.
-    [[nodiscard]] transport::TechniqueShares sharesOfMeeting(const PathState& path, int emitter, const SurfaceHit& hit,
-                                                             double time) const;
+    /// MIS weight of light of an emitter that is met at this time: the part that is not left to connections.
+    [[nodiscard]] transport::TechniqueShare shareOfMeeting(const PathState& path, int emitter, const SurfaceHit& hit,
+                                                           double time) const;
     /// MIS weight of light of an emitter that is met: the part that is not left to the other way of finding the same
     /// path.
     [[nodiscard]] float refractedShare(int emitter) const;

@@ -91,8 +91,10 @@ void StepsToEmitter::setTimeBudgetFrom(const PathState& path, const Vec3f& posit
     const darts::TimeGate open{gate.begin - target.start, gate.end - target.start};
     const auto range = darts::LengthInterval::of(open, path.time, double(speed));
     const float faster = guided_->bound.oneSpeed() ? 0.0f : guided_->bound.highestSpeed() / speed - 1.0f;
+    // From media only the target's own point is looked for; from the camera, and by surfaces, its emitter may be met.
+    const bool meets = !path.scattered || guided_->bound.surfacesTurn();
     setTimeBudget(darts::TimeBudget::of(darts::vec3(target.vertex.position() - position), range),
-                  target.emitterRadius + faster * std::max(float(range.high), 0.0f));
+                  (meets ? target.emitterRadius : 0.0f) + faster * std::max(float(range.high), 0.0f));
 }
 
 void StepsToEmitter::setEscapeModelFrom(const PathState& path, const transport::FlightStart& start) {

@@ -40,9 +40,18 @@ inline float logOfQuotient(float density, float over = 1.0f) {
     return std::log(std::clamp(std::max(density, Least) / std::max(over, Least), Least, Most));
 }
 
-/// MIS weights of one of several techniques of the same paths: beside guided ones, and where all are plain.
-struct TechniqueShares {
-    float beside = 1.0f, alone = 1.0f;
+/// One of two techniques of the same paths.
+struct TechniqueShare {
+    float beside = 1.0f; ///< MIS weight, beside guided paths
+    float alone = 1.0f;  ///< the same where all paths are plain
+
+    /// By densities, where all paths are plain and beside guided ones (power heuristic).
+    struct Densities {
+        float own, other;
+    };
+    [[nodiscard]] static TechniqueShare of(const Densities& alone, const Densities& besideGuided) {
+        return {powerHeuristic(besideGuided.own, besideGuided.other), powerHeuristic(alone.own, alone.other)};
+    }
 };
 
 /// How densely guided paths find what one has found, over plain ones; logarithms.
@@ -56,16 +65,16 @@ struct LogRatio {
     /// Where a part of the guided paths alone may find it, the logarithm of which this is.
     [[nodiscard]] LogRatio plus(float logOfPart) const {
         LogRatio sum{weighed + logOfPart, plainToEstimate + logOfPart};
-        sum.shareAlone = shareAlone;
+        sum.aloneOverBeside = aloneOverBeside;
         return sum;
     }
-    [[nodiscard]] LogRatio with(const TechniqueShares& shares) const {
+    [[nodiscard]] LogRatio with(const TechniqueShare& share) const {
         LogRatio same = *this;
-        same.shareAlone = shares.alone / shares.beside;
+        same.aloneOverBeside = share.alone / share.beside;
         return same;
     }
 
-    float shareAlone = 1.0f; ///< of the technique, where all paths are plain, over that beside guided ones
+    float aloneOverBeside = 1.0f; ///< of the technique's shares (TechniqueShare)
 };
 
 /// Where a contribution was found: at a vertex that its path has gone on from, or beside the path's way, where guided

@@ -132,7 +132,6 @@ void EscapeModels::setGeometry(const Boundary& boundary, const Vec3f& position, 
     darts::EscapeGeometry& exit = budget.escape;
     exit.straightExit = boundary.straight;
     exit.refractedOnly = body.isSealed();
-    exit.gate = budget.width;
     exit.inside = std::min(boundary.exit.distance, budget.C);
     const Vec3f direction = darts::to<Vec3f>(budget.axis);
     exit.lengthPerDepth = 1.0f / std::max(direction.dot(boundary.exit.face.normal), LeastCosine);

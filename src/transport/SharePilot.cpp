@@ -21,7 +21,7 @@ double PathCosts::mean(const StrategyBalance& balance) const {
 double SharePilot::weighed(const Contribution& contribution, Strategy strategy, const StrategyBalance& balance) const {
     const auto value = double(contribution.value);
     if (balance.guided == 0.0f) {
-        const double ofPlain = value * double(contribution.logRatio.shareAlone);
+        const double ofPlain = value * double(contribution.logRatio.aloneOverBeside);
         if (strategy == Strategy::Plain) return ofPlain;
         return ofPlain * std::exp(std::min(double(contribution.logRatio.plainToEstimate), 80.0));
     }
@@ -91,7 +91,7 @@ auto SharePilot::momentsByPixel(const StrategyBalance& balance) const -> std::ve
         before.clear();
         if (i % PathsOfPixel == 0) halves.clear();
         for (size_t k = paths_[i].first; k < end(i); ++k) {
-            const double share = balance.guided == 0.0f ? double(found_[k].logRatio.shareAlone) : 1.0;
+            const double share = balance.guided == 0.0f ? double(found_[k].logRatio.aloneOverBeside) : 1.0;
             const double here = weighed(found_[k], strategy, Halves), there = weighed(found_[k], strategy, balance);
             Before& frame = before[found_[k].frame];
             const double inPairs = balance.guided > 0.0f                             ? here
@@ -134,8 +134,7 @@ double SharePilot::ownSecondMoment(Strategy strategy) const {
         if (paths_[i].strategy != strategy) continue;
         paths += 1.0;
         frames.clear();
-        for (size_t k = paths_[i].first; k < end(i); ++k)
-            frames[found_[k].frame] += double(found_[k].value) * double(found_[k].logRatio.shareAlone);
+        for (size_t k = paths_[i].first; k < end(i); ++k) frames[found_[k].frame] += double(found_[k].value);
         for (const auto& [frame, sum] : frames) squares += sum * sum;
     }
     return paths > 0.0 ? squares / paths : 0.0;

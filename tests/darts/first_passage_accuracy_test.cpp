@@ -55,7 +55,7 @@ struct Configuration {
         along = s.next1D() * latest.firstLeg();
         escape.gate = float(double(latest.delta) * logUniform(s, 1e-6, 2.0));
         escape.reflectionA = s.next1D() < 0.5f ? 1.0f : float(logUniform(s, 1.0, 90.0));
-        escape.extraLength = s.next1D() < 0.8f ? 0.0f : 0.1f * latest.delta;
+        escape.extraLength = s.next1D() < 0.8f ? 0.0f : (s.next1D() < 0.5f ? 0.1f : 2.0f) * latest.delta;
         escape.outerSpeed = s.next1D() < 0.5f ? 1.0f : 0.5f + s.next1D();
         const float wall = s.next1D() < 0.5f ? EscapeGeometry::Infinite : float(depth * logUniform(s, 1.01, 100.0));
         const float beyond = s.next1D() < 0.7f ? 0.0f : float(mfp * s.nextDouble());
@@ -81,7 +81,7 @@ struct ExactPassage {
     explicit ExactPassage(const Configuration& configuration) : c(configuration) {
         const Exact C(c.latest.C), d(c.along);
         rho = sqrt(d * d - 2 * d * C * (1 - Exact(c.latest.h)) + C * C);
-        excess = positive(C + c.latest.delta - d - rho - c.escape.extraLength);
+        excess = C + c.latest.delta - d - rho - c.escape.extraLength;
         for (size_t i = 0; i < c.escape.sides.size(); i += 2) {
             const EscapeGeometry::Side &a = c.escape.sides[i], &b = c.escape.sides[i + 1];
             const Exact toA = a.outside + d * dotExactly(c.direction, a.normal),
@@ -101,10 +101,11 @@ struct ExactPassage {
         const Exact cosine = dotExactly(c.direction, face.normal);
         Exact depth = positive(face.depth - c.along * cosine);
         const Exact outside = sqrt(positive(rho * rho - depth * (depth + 2 * Exact(face.height))));
-        const Exact longest = positive(excess + rho - outside * c.escape.outerSpeed);
+        const Exact gained = positive(outside * (1 - Exact(c.escape.outerSpeed))), inTime = positive(excess + gained);
+        const Exact longest = positive(inTime - gained + rho - outside * c.escape.outerSpeed);
         if (c.persistenceLength > 0)
             depth = positive(depth - cosine * c.persistenceLength * -expm1(-longest / c.persistenceLength));
-        const Exact reachable = least(most(excess, c.escape.gate * Exact(0.01f)), least(longest, c.escape.gate));
+        const Exact reachable = least(most(inTime, c.escape.gate * Exact(0.01f)), least(longest, c.escape.gate));
         return {depth, longest, reachable};
     }
     /// The part that has left after the length s from the depth z.
@@ -133,7 +134,7 @@ struct ExactPassage {
     [[nodiscard]] Exact chance() const {
         Exact sum = 0;
         for (size_t i = 0; i < c.escape.faces.size(); ++i) sum += throughFace(i, 0, 0);
-        sum *= exp(-squaredOutside * fourthInverseD / (excess + meanFreePath));
+        sum *= exp(-squaredOutside * fourthInverseD / (positive(excess) + meanFreePath));
         return sum;
     }
 };
@@ -154,7 +155,9 @@ TEST(FirstPassageAccuracy, Departures) {
         depth.add(double(left.depth), exactly.depth, Exact(c.escape.faces[0].depth) + c.along + c.persistenceLength);
         // Of targets on the boundary the way outside is a root of a difference.
         longest.add(double(left.longest), exactly.longest, exact.excess + exact.rho);
-        reachable.add(double(left.reachable), exactly.reachable, Exact(c.escape.gate));
+        // Where light is faster outside it is a difference of lengths.
+        const Exact lengths = c.escape.outerSpeed < 1.0f ? exact.rho : Exact(0);
+        reachable.add(double(left.reachable), exactly.reachable, Exact(c.escape.gate) + lengths);
     }
     EXPECT_TRUE(rho.within(2.5e-7));
     EXPECT_TRUE(excess.within(1e-6));

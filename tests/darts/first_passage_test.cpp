@@ -108,6 +108,22 @@ TEST(FirstPassage, SlabsLoseLightThroughTheirBack) {
     EXPECT_NEAR(at(0.05, 0.08), logPassage(outOf(0.05, 3.0, 3.08, 0.05), 0.0f), 1e-3);
 }
 
+/// Outside light is 2.5 times as fast: connections in time are longer than at the speed inside any could be.
+TEST(FirstPassage, KnowsThatLightIsFasterOutside) {
+    constexpr double Depth = 0.3, Height = 3.0, OuterSpeed = 0.4, Gate = 0.1, Left = 0.8;
+    // Lengths of time at the speed inside: so much is left there when light has flown the height outside.
+    TimeBudget budget = outOf(Depth, Height, Left + OuterSpeed * Height, Gate);
+    EXPECT_FALSE(budget.alive());
+    const float extra = float((1.0 / OuterSpeed - 1.0) * (Left + OuterSpeed * Height));
+    budget.excess += extra;
+    budget.width += extra;
+    budget.escape.extraLength = extra;
+    budget.escape.outerSpeed = float(OuterSpeed);
+    const double expected =
+        tungsten::test::integrate<31>([&](double s) { return flux(Depth, s); }, Left - Gate, Left, 15, 1e-9);
+    EXPECT_NEAR(logPassage(budget, 0.0f), std::log(expected) - SigmaA * Left, 3e-3);
+}
+
 /// However late: a target of 0 would be a bias.
 TEST(FirstPassage, IsNeverZero) {
     for (const double length : {1e-3, 1.0, 1e4, 1e7})

@@ -324,13 +324,19 @@ FAULTS = [
      [("transport_tests", "Scripted.EndsWhereAHookSaysSo")]),  # limits of flights do not end a walk
     ("src/path/StepsToEmitter.cpp", "path.channels = plain.channels;", ";",
      [("path_tests", "PlainTrail.*")]),  # densities of channels stand still on guided paths
-    ("src/path/PathVisitor.cpp", "weight = shares.beside;\n        logRatio", "logRatio",
+    ("src/path/PathVisitor.cpp", "weight = share.beside;\n        logRatio", "logRatio",
      [("path_tests", "Scenes/Balanced.MeansAreTheSameAtAnyShare/LampMetAndConnectedTo")]),  # lamps that are met and connected to count twice
-    ("src/path/PathVisitor.cpp", "powerHeuristic(path.last.pdf, pdf * denser), alone", "powerHeuristic(path.last.pdf, pdf * std::min(denser, 1.0f)), alone",
+    ("src/path/PathVisitor.cpp", "{path.last.pdf, pdf * denser});", "{path.last.pdf, pdf * std::min(denser, 1.0f)});",
      [("path_tests", "Scenes/Balanced.MeansAreTheSameAtAnyShare/LargeLamp:Scenes/Balanced.MeansAreTheSameAtAnyShare/LampMetAndConnectedTo")]),  # lights that are met do not know how densely guided paths connect
+    ("src/darts/FirstPassage.h", "max(Batch(excess - min(slower, Batch(0.0f))), Batch(0.0f))", "max(excess, Batch(0.0f))",
+     [("darts_tests", "FirstPassage.KnowsThatLightIsFasterOutside")]),  # light that is faster outside of a body is taken for late
+    ("src/darts/TimeBudget.h", "r.escape.gate = float(range.high - std::max(range.low, 0.0));", "r.escape.gate = r.width;",
+     [("darts_tests", "FirstPassage.KnowsThatLightIsFasterOutside")]),  # gates that only faster light is in time for have a negative width
+    ("src/path/StepsToEmitter.cpp", "(meets ? target.emitterRadius : 0.0f)", "0.0f * float(meets)",
+     [("path_tests", "SpecularTime.GuidedPathsSeeLampsInMirrorsWhicheverPointTheyAimAt")]),  # lights that surfaces show later than the target are given up
     ("src/path/StepsToEmitter.h", "overPlain(logRatio - logOfPoint_ + ", "overPlain(logRatio + ",
      [("path_tests", "PlainTrail.*")]),  # shares depend on what points of a lamp there were to choose
-    ("src/transport/SharePilot.cpp", "value * double(contribution.logRatio.shareAlone);", "value;",
+    ("src/transport/SharePilot.cpp", "value * double(contribution.logRatio.aloneOverBeside);", "value;",
      [("path_tests", "SharePilot.ConnectionsOfBothShareWithLightsThatAreMet")]),  # pilot takes plain paths alone to share as beside guided ones
     ("src/transport/Balance.h", "return 1.0f / (plain + guided * std::exp(std::min(logRatio, Most)));", "return 1.0f / plain;",
      [("path_tests", "StrategyBalance.WeightsOfBothAddUpToTheContributionOverBothDensities:Scenes/Balanced.*")]),  # plain paths bring all of what both find
@@ -393,7 +399,7 @@ FAULTS = [
     ("src/path/light/CameraConnections.cpp", "connection.throughput * float(context_->sensor.density(time))", "connection.throughput",
      [("path_tests", "LightTracer.ShowsSurfacesInTimeOfArrivalAndWithoutTheCamerasTime")]),  # light tracer: not divided by the frame's width, response ignored
     # src/path/techniques
-    ("src/path/techniques/EmitterConnections.cpp", "(weight / target.choice.ofPath)", "weight",
+    ("src/path/techniques/EmitterConnections.cpp", "(share.beside / target.choice.ofPath)", "share.beside",
      [("path_tests", "ManyLights.*")]),  # emitters met by guided paths lack 1 / probability of their choice
     ("src/path/techniques/GlossyLightVertices.cpp", "* transmittance * (choice.weight * share),", "* transmittance * choice.weight,",
      [("path_tests", "Corners/WithReflectedLight.MeansAreAsWithout/*")]),  # light of glossy reflections is counted twice

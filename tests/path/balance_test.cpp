@@ -102,7 +102,7 @@ TEST(SharePilot, JudgesPlainPathsByWhatTheyWouldBring) {
         const GuidedContext guided = setup.guided();
         const PathContext plain = setup.plain();
         PathCounters counters;
-        SharePilot pilot;
+        SharePilot pilot, alone;
         PlainTrail trail;
         for (uint64_t i = 0; i < 200000; ++i) {
             const bool guides = i % 2 == 1;
@@ -119,10 +119,14 @@ TEST(SharePilot, JudgesPlainPathsByWhatTheyWouldBring) {
             } else {
                 trail.start(guided, setup.targets, sink, counters, sampler);
                 tracePlainBesideGuided(plain, {&trail}, sink, counters, sampler, ray);
+                PixelAccumulator own(alone, setup.sensor, counters);
+                alone.begin(Strategy::Plain);
+                tracePath<true, true>(plain, own, counters, sampler, nullptr, ray);
+                pilot.tellPairsOfAlone(alone.pairsOfLast());
             }
         }
         EXPECT_GT(counters.lightVertices, 10000u);
-        const double own = pilot.ownSecondMoment(Strategy::Plain), judged = pilot.secondMoment({1.0f, 0.0f});
+        const double own = alone.ownSecondMoment(Strategy::Plain), judged = pilot.secondMoment({1.0f, 0.0f});
         RecordProperty("judged_over_own", std::to_string(judged / own));
         EXPECT_NEAR(judged, own, 0.25 * own) << bsdf;
     }

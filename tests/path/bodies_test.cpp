@@ -109,6 +109,25 @@ TEST(Bodies, GuidedPathsAgreeWithPlainOnesSeenFromAfar) {
     }
 }
 
+/// Light leaves a slow ball 2.5 times as fast, and would be too late all the way at the speed inside.
+TEST(Bodies, GuidedPathsAgreeWithPlainOnesOutOfSlowOnes) {
+    const std::string scene = R"({"media": [{"name": "milk", "type": "homogeneous", "sigma_s": 20, "sigma_a": 0.01,
+                                             "speed_of_light": 0.4}],
+      "primitives": [{"type": "sphere", "int_medium": "milk", "bsdf": {"type": "forward"}, "transform": {"scale": 0.8}},
+                     {"type": "disk", "emission": 40, "bsdf": {"type": "null"},
+                      "transform": {"position": [1.5, 1.5, 2], "rotation": [130, 30, 0], "scale": 1.2}}],
+      "camera": {"resolution": 1, "fov": 20, "transform": {"position": [0, 0, 4], "look_at": [0, 0, 0]}},
+      "integrator": {"type": "path_tracer", "max_bounces": 256, "transient_time_center": 6.6,
+                     "transient_time_width": 0.3}, "renderer": {}})";
+    const auto render = [&](const std::string& darts, uint32_t samples) {
+        return renderPaths(scene, {{darts}, 32, samples, 5});
+    };
+    const auto plain = render("integrator.darts=off", 20000), guided = render(GuidedAlone, 20000);
+    const double error = std::hypot(plain->pixelError(0), guided->pixelError(0));
+    EXPECT_NEAR(guided->mean(), plain->mean(), 4.5 * error);
+    EXPECT_LT(error, 0.01 * plain->mean());
+}
+
 /// A cube of milk under a lamp as large, of which half the points face away and few let light arrive in a short gate.
 std::string underALamp(double width) {
     std::ostringstream json;

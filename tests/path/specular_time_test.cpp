@@ -108,5 +108,25 @@ TEST(SpecularTime, UnwarpedFogShowsInAMirrorFarFromTheLight) {
     EXPECT_LT(std::hypot(error[0], error[1]), 0.1 * mean[0]);
 }
 
+/// A mirror in thin fog shows a lamp 4 long, whose near end alone is in time: guided paths that aim at the other end
+/// meet it, too.
+TEST(SpecularTime, GuidedPathsSeeLampsInMirrorsWhicheverPointTheyAimAt) {
+    const std::string scene = R"({"media": [{"name": "fog", "type": "homogeneous", "sigma_s": 0.1, "sigma_a": 0}],
+        "primitives": [
+        {"type": "quad", "bsdf": {"type": "mirror", "albedo": 0.9}, "ext_medium": "fog",
+         "transform": {"scale": [8, 1, 8], "rotation": [0, 0, -45]}},
+        {"type": "quad", "bsdf": {"type": "null"}, "emission": 10, "ext_medium": "fog",
+         "transform": {"position": [0, -3, 0], "scale": [4, 1, 4], "rotation": [0, 0, 40]}}],
+        "camera": {"resolution": 1, "fov": 40, "medium": "fog",
+                   "transform": {"position": [-1, 0, 0], "look_at": [0, 0, 0]}},
+        "integrator": {"type": "path_tracer", "max_bounces": 8, "transient_time_center": 3,
+        "transient_time_width": 0.8}, "renderer": {}})";
+    const auto render = [&](const std::string& darts) { return renderPaths(scene, {{darts}, 32, 4000, 3}); };
+    const auto plain = render("integrator.darts=off"), guided = render(test::GuidedAlone);
+    const double error = std::hypot(plain->pixelError(0), guided->pixelError(0));
+    EXPECT_NEAR(guided->mean(), plain->mean(), 4.5 * error);
+    EXPECT_LT(error, 0.02 * plain->mean());
+}
+
 } // namespace
 } // namespace tungsten::path

@@ -13,7 +13,6 @@ inline darts::TimeBudget outOf(double depth, double height, double longest, doub
     budget.model = darts::EscapeModel::Bounded;
     budget.escape.faces.add({{0, 0, 1}, float(depth), float(height), darts::EscapeGeometry::Infinite, 0.0f});
     budget.escape.inside = float(depth);
-    budget.escape.gate = budget.width;
     return budget;
 }
 

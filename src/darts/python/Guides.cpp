@@ -132,7 +132,6 @@ double firstPassageLog(double depth, double longest, double gate, double sigmaA,
     budget.model = darts::EscapeModel::Bounded;
     budget.escape.faces.add({{0, 0, 1}, float(depth), float(Height), float(thickness), 0.0f});
     budget.escape.inside = float(depth);
-    budget.escape.gate = budget.width;
     budget.escape.reflectionA = darts::boundaryReflectionA(float(relativeIndex));
     if (!budget.alive()) return -std::numeric_limits<double>::infinity();
     const darts::FirstPassage passage(float(sigmaA), float(reducedS), budget.escape, float(allowance));

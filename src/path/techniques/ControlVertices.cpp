@@ -26,14 +26,14 @@ void add(const GuidedPath& path, const Medium& medium, const darts::ControlVerte
                                                               state.region, path.counters.shadowRays);
     if (isBlack(visibility.transmittance) || !visibility.oneSpeed || !path.counts(1 + visibility.crossings, 1)) return;
     const auto ending = ControlVertices::ending(path, medium, vertex.distance);
-    const auto shares = ConnectionsFromMedia::shares(path, position, phase, ending);
+    const auto share = ConnectionsFromMedia::share(path, position, phase, ending);
     const float weight =
-        phase / sqr(vertex.toTarget) * vertex.inversePdf * ending.shareOfControl() / chance * shares.beside;
+        phase / sqr(vertex.toTarget) * vertex.inversePdf * ending.shareOfControl() / chance * share.beside;
     const Rgb radiance = state.throughput * medium.sigmaS() * medium.transmittance(vertex.distance) * light *
                          visibility.transmittance * weight;
     // A delta gate is one of time, the connection's weight dt/dS one of length.
     path.sink.addInside(path.context.sensor.gate.delta ? radiance * state.region.speed : radiance, arrival,
-                        *path.target().emitter, LogRatio(ending.logRatio).with(shares));
+                        *path.target().emitter, LogRatio(ending.logRatio).with(share));
 }
 
 } // namespace

@@ -20,17 +20,17 @@ void ConnectionsFromMedia::connect(const GuidedPath& path, const Medium& medium,
     const auto connection = path.connector().connect(
         vertex, state.throughput, transport::connectionEndpoint(*way, path.target()), path.counters.shadowRays);
     if (!connection || !path.counts(connection->crossings, 0)) return;
-    const auto shares = ConnectionsFromMedia::shares(path, state.ray.origin, vertex.pdf(way->direction), ending);
-    const float share = (connection->oneSpeed ? 1.0f - controlShare : 1.0f) * shares.beside;
+    const auto ofConnection = ConnectionsFromMedia::share(path, state.ray.origin, vertex.pdf(way->direction), ending);
+    const float share = (connection->oneSpeed ? 1.0f - controlShare : 1.0f) * ofConnection.beside;
     if (share > 0.0f)
         path.sink.add(connection->throughput * share, state.time + connection->time + path.target().start,
-                      *path.target().emitter, LogRatio(ending.logRatio).with(shares), Found::OnWay);
+                      *path.target().emitter, LogRatio(ending.logRatio).with(ofConnection), Found::OnWay);
 }
 
-transport::TechniqueShares ConnectionsFromMedia::shares(const GuidedPath& path, const Vec3f& position, float pdf,
-                                                        const StepsToEmitter::InMedium& ending) {
+transport::TechniqueShare ConnectionsFromMedia::share(const GuidedPath& path, const Vec3f& position, float pdf,
+                                                      const StepsToEmitter::InMedium& ending) {
     if (!path.steps.hasDensities()) return {};
-    return path.target().sharesOfConnection(position, pdf, path.steps.connectionsOverPlain(ending.logRatio));
+    return path.target().shareOfConnection(position, pdf, path.steps.connectionsOverPlain(ending.logRatio));
 }
 
 void ConnectionsFromSurfaces::connect(const GuidedPath& path, const SurfaceHit& hit, const Rgb& throughput) {
@@ -45,13 +45,13 @@ void ConnectionsFromSurfaces::connect(const GuidedPath& path, const SurfaceHit& 
                                                      path.counters.shadowRays);
     if (!connection || !path.counts(1 + connection->crossings, 0)) return;
     // Weights by the surface's own density, which, unlike the guided one, is a function of the path alone.
-    const float weight = target.sharesOfConnection(hit.position, vertex.pdf(way->direction)).alone;
+    const auto ofConnection = target.shareOfConnection(hit.position, vertex.pdf(way->direction));
     const float share = connection->crossings == 0 ? shareOfWalk(path, vertex, hit.t, *way) : 1.0f;
     LogRatio logRatio = path.steps.logRatioOnSurface();
     if (share < 1.0f)
         logRatio = {path.logRatioByLightCaches(vertex, share), logRatio.weighed - std::log(std::max(share, 1e-30f))};
-    path.sink.add(connection->throughput * (weight * share), time + connection->time + target.start, *target.emitter,
-                  logRatio);
+    path.sink.add(connection->throughput * (ofConnection.beside * share), time + connection->time + target.start,
+                  *target.emitter, logRatio.with(ofConnection));
 }
 
 float ConnectionsFromSurfaces::shareOfWalk(const GuidedPath& path, const transport::Vertex& vertex, float length,
@@ -78,12 +78,15 @@ void EmittersMet::add(const GuidedPath& path, const SurfaceHit& hit, const Rgb& 
     if (path.state.last.kind == Kind::Medium || !path.counts(0, 0)) return;
     const Rgb radiance = emittedRadiance(*target.emitter, hit.uv, hit.ng, -path.state.ray.direction);
     if (isBlack(radiance)) return;
-    float weight = 1.0f;
-    if (path.state.last.kind == Kind::Surface)
-        weight =
-            transport::powerHeuristic(density(path), target.pdfFrom(path.state.last.position, hit.position, hit.ng));
-    path.sink.add(throughput * radiance * (weight / target.choice.ofPath), path.state.timeAfter(hit.t) + target.start,
-                  *target.emitter, path.steps.logRatioOnSurface() + std::log(target.choice.ofPath));
+    transport::TechniqueShare share;
+    if (path.state.last.kind == Kind::Surface) {
+        const transport::TechniqueShare::Densities densities{
+            density(path), target.pdfFrom(path.state.last.position, hit.position, hit.ng)};
+        share = transport::TechniqueShare::of(densities, densities);
+    }
+    const LogRatio logRatio = path.steps.logRatioOnSurface() + std::log(target.choice.ofPath);
+    path.sink.add(throughput * radiance * (share.beside / target.choice.ofPath),
+                  path.state.timeAfter(hit.t) + target.start, *target.emitter, logRatio.with(share));
 }
 
 } // namespace tungsten::path

@@ -12,8 +12,8 @@ struct ConnectionsFromMedia {
     /// From the ray's origin, less the share of control vertices.
     static void connect(const GuidedPath& path, const Medium& medium, const StepsToEmitter::InMedium& ending);
     /// The part of connections that is not left to emitters that plain paths meet; `pdf` is the phase function's.
-    [[nodiscard]] static transport::TechniqueShares shares(const GuidedPath& path, const Vec3f& position, float pdf,
-                                                           const StepsToEmitter::InMedium& ending);
+    [[nodiscard]] static transport::TechniqueShare share(const GuidedPath& path, const Vec3f& position, float pdf,
+                                                         const StepsToEmitter::InMedium& ending);
     /// Per length, for weights, of the walk's flights that end at `distance`.
     [[nodiscard]] static float density(const Medium& medium, float distance) {
         return transport::pdfFreeFlight(meanComponent(medium.sigmaT()), distance);
