@@ -66,7 +66,7 @@ struct EscapeGeometry {
     float lengthPerDepth = 1;    ///< length of straight ways in the body per depth under that face
     float reflectionA = 1;       ///< A = (1 + R) / (1 - R), R the mean internal reflectance; 1: index-matched
     float outerSpeed = 1;        ///< speed of light in the body over that beyond
-    float gate = 0;              ///< length of the gate, of what is still to come of it
+    float gate = 0;              ///< what is still to come of the gate, a length
     float extraLength = 0;       ///< by which light from other points of the emitter may arrive later
     bool straightExit = true;    ///< light goes on straight beyond the boundary
     bool refractedOnly = false;  ///< every face refracts: no straight connection from inside reaches the target

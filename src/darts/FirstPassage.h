@@ -18,7 +18,7 @@ struct EscapePoint {
     float persistenceLength; ///< 0: light leaves evenly in all directions
     Batch d;                 ///< along the flight
     Batch rho;               ///< from the target
-    Batch excess;            ///< longest connection in time, over rho; negative where only what is faster outside is
+    Batch excess;            ///< longest connection in time at the speed inside, over rho; may be negative
     Batch squaredOutside;    ///< distance from what lies inside all sides, squared
 
     /// At the distance `along`; `latest` is of the latest arrival.
@@ -49,8 +49,9 @@ struct EscapePoint {
         Batch depth = max(Batch(face.depth - d * cosine), Batch(0.0f));
         // The target is `outside` away from the foot on the boundary: rho - outside without a difference of lengths.
         const Batch above = depth * (depth + 2.0f * face.height), outside = sqrt(max(rho * rho - above, Batch(0.0f)));
-        // By how much the length outside counts for more than at the body's speed. What is left is never below 0, as
-        // importance is not 0 where only the extra length allows an arrival.
+        // What the way outside takes more than one as long inside: negative where light is faster there. Over the
+        // straight way at both speeds nothing less than 0 is left: importance is not 0 where only the extra length
+        // allows an arrival.
         const Batch slower = (exit.outerSpeed - 1.0f) * outside;
         const Batch left = max(Batch(excess - min(slower, Batch(0.0f))), Batch(0.0f));
         const Batch longest = max(Batch(left - max(slower, Batch(0.0f)) + above / (rho + outside)), Batch(0.0f));

@@ -75,6 +75,7 @@ class TargetChoice {
         target.u = u;
         return target;
     }
+    /// This point of an emitter.
     [[nodiscard]] PathTarget at(size_t emitter, const SurfaceSample& point) const;
     /// Guided paths choose among points of its emitter. Not for virtual sources.
     [[nodiscard]] bool hasOtherPoints(const PathTarget& target) const;

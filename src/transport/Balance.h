@@ -56,25 +56,26 @@ struct TechniqueShare {
 
 /// How densely guided paths find what one has found, over plain ones; logarithms.
 struct LogRatio {
-    float weighed;         ///< as both strategies weigh it: StrategyBalance
-    float plainToEstimate; ///< plain paths' own estimate over the one at hand
+    float weighed;                ///< as both strategies weigh it: StrategyBalance
+    float plainToEstimate;        ///< plain paths' own estimate over the one at hand
+    float aloneOverBeside = 1.0f; ///< not a logarithm: of the technique's shares (TechniqueShare)
 
     /// Both are the same, unless an estimate is random: what light paths bring is weighed by the way up to them.
     LogRatio(float exact) : weighed(exact), plainToEstimate(exact) {} // NOLINT(google-explicit-constructor)
     LogRatio(float asWeighed, float ofPlain) : weighed(asWeighed), plainToEstimate(ofPlain) {}
     /// Where a part of the guided paths alone may find it, the logarithm of which this is.
     [[nodiscard]] LogRatio plus(float logOfPart) const {
-        LogRatio sum{weighed + logOfPart, plainToEstimate + logOfPart};
-        sum.aloneOverBeside = aloneOverBeside;
-        return sum;
+        LogRatio part = *this;
+        part.weighed += logOfPart;
+        part.plainToEstimate += logOfPart;
+        return part;
     }
+    /// What one of two techniques has found.
     [[nodiscard]] LogRatio with(const TechniqueShare& share) const {
         LogRatio same = *this;
         same.aloneOverBeside = share.alone / share.beside;
         return same;
     }
-
-    float aloneOverBeside = 1.0f; ///< of the technique's shares (TechniqueShare)
 };
 
 /// Where a contribution was found: at a vertex that its path has gone on from, or beside the path's way, where guided
@@ -96,9 +97,9 @@ struct StrategyBalance {
     [[nodiscard]] float weightOfGuided(float logRatio) const {
         return 1.0f / (plain * std::exp(std::min(-logRatio, Most)) + guided);
     }
-    /// How densely both find what guided paths find so densely, over plain paths alone; at least 1. Techniques that
-    /// guided paths take share with others by it, and then bring no more than they or the others where all are plain.
-    /// Bounded: shares that squares of it are left with stay floats.
+    /// How densely both find what guided paths find so densely, over plain paths alone; at least 1. A technique of both
+    /// shares by it with one of plain paths; neither then brings more than the one or the other where all are plain,
+    /// over `plain`. Bounded, so that what its square leaves to the other is still a float.
     [[nodiscard]] float overPlain(float logRatio) const {
         constexpr float MostLog = 16.0f;
         return std::max(plain + guided * std::exp(std::min(logRatio, MostLog)), 1.0f);

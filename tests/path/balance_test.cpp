@@ -26,6 +26,27 @@ TEST(StrategyBalance, WeightsOfBothAddUpToTheContributionOverBothDensities) {
     EXPECT_EQ(balance.weight(Strategy::Alone, 3.0f), 1.0f);
 }
 
+/// Connections, which both strategies find, and lights that plain paths meet: densities of `connects` and `meets`.
+TEST(StrategyBalance, TechniquesOfBothAndOfPlainPathsAreBounded) {
+    using transport::TechniqueShare;
+    for (const float plain : {0.1f, 0.5f, 0.9f})
+        for (float logRatio = -20.0f; logRatio <= 40.0f; logRatio += 0.5f)
+            for (const float meets : {1e-4f, 0.03f, 0.5f, 1.0f, 2.0f, 30.0f, 1e4f}) {
+                const StrategyBalance balance{plain, 1.0f - plain};
+                constexpr float Connects = 1.0f;
+                const float dense = Connects * balance.overPlain(logRatio);
+                const auto connection = TechniqueShare::of({Connects, meets}, {dense, meets}),
+                           meeting = TechniqueShare::of({meets, Connects}, {meets, dense});
+                EXPECT_NEAR(connection.beside + meeting.beside, 1.0f, 1e-6f);
+                EXPECT_NEAR(connection.alone + meeting.alone, 1.0f, 1e-6f);
+                const float bound = std::max(connection.alone / Connects, meeting.alone / meets) / plain * 1.00001f;
+                EXPECT_LE(connection.beside / Connects * balance.weightOfPlain(logRatio), bound)
+                    << plain << " " << logRatio << " " << meets;
+                EXPECT_LE(meeting.beside / meets * balance.weightOfPlain(StrategyBalance::Never), bound)
+                    << plain << " " << logRatio << " " << meets;
+            }
+}
+
 TEST(PathCosts, SharesOfTimeAreThoseOfPathsByTheirCosts) {
     const PathCosts costs{1.0, 0.5, 6.0};
     const StrategyBalance balance = costs.ofTime(0.5);
@@ -139,7 +160,7 @@ struct Pilots {
 };
 
 void trace(Pilots& pilots, const GuidedSetup& setup, uint64_t paths) {
-    auto& [alone, pilot, beside] = pilots;
+    auto& [alone, told, untold] = pilots;
     const GuidedContext guided = setup.guided();
     const PathContext plain = setup.plain();
     PathCounters counters;
@@ -148,22 +169,23 @@ void trace(Pilots& pilots, const GuidedSetup& setup, uint64_t paths) {
         const Sampler sampler(3, RandomStream::Test, 1, i);
         Sampler lens = sampler;
         const Ray ray = setup.scene.camera.generateRay({0, 0}, lens.next2D(), lens.next2D());
-        PixelAccumulator sink(pilot, setup.sensor, counters), own(alone, setup.sensor, counters),
-            shared(beside, setup.sensor, counters);
-        for (SharePilot* of : {&pilot, &beside}) of->begin(i % 2 == 0 ? Strategy::Plain : Strategy::Guided);
+        PixelAccumulator own(alone, setup.sensor, counters), first(told, setup.sensor, counters),
+            second(untold, setup.sensor, counters);
+        for (SharePilot* of : {&told, &untold}) of->begin(i % 2 == 0 ? Strategy::Plain : Strategy::Guided);
         if (i % 2 == 1) {
             Sampler light = sampler.branch(RandomStream::Target, 0);
             const auto target = setup.targets.sample(0.5f, light, setup.watch, counters);
-            for (PixelAccumulator* to : {&sink, &shared}) traceGuidedPath(guided, *to, counters, sampler, *target, ray);
+            for (PixelAccumulator* to : {&first, &second})
+                traceGuidedPath(guided, *to, counters, sampler, *target, ray);
             continue;
         }
-        for (PixelAccumulator* to : {&sink, &shared}) {
+        for (PixelAccumulator* to : {&first, &second}) {
             trail.start(guided, setup.targets, *to, counters, sampler);
             tracePlainBesideGuided(plain, {&trail}, *to, counters, sampler, ray);
         }
         alone.begin(Strategy::Plain);
         tracePath<true, true>(plain, own, counters, sampler, nullptr, ray);
-        pilot.tellPairsOfAlone(alone.pairsOfLast());
+        told.tellPairsOfAlone(alone.pairsOfLast());
     }
 }
 

@@ -110,7 +110,7 @@ class Submit(unittest.TestCase):
 
         with unittest.mock.patch.object(run.subprocess, "Popen", slow), self.assertRaises(KeyboardInterrupt), run.workers(1) as pool:
             late = pool.submit(run.call, ["sleep", "20"])
-            started_late.wait()
+            self.assertTrue(started_late.wait(10))
             raise KeyboardInterrupt
         self.assertIsInstance(late.exception(), run.BenchError)
         self.assertEqual(run.call(["true"]), (0, ""))

@@ -32,7 +32,7 @@ struct ConnectionsFromSurfaces {
     [[nodiscard]] static float density(const GuidedPath& path, const transport::Vertex& vertex, float length);
 };
 
-/// Emitters that the walk meets, from surfaces: those that it meets from media plain paths beside it meet.
+/// Emitters that the walk meets; not straight on from media, where it connects, and plain paths beside it meet them.
 struct EmittersMet {
     /// Light that the surface at the end of the ray emits, if it is the target's; `throughput` includes the way there.
     static void add(const GuidedPath& path, const SurfaceHit& hit, const Rgb& throughput);
