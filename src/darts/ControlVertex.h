@@ -74,8 +74,9 @@ struct ConnectionLength {
     }
 };
 
-/// Lengths of connections whose direction is known: half of them are drawn in proportion to 1 / ((low + offset)^2 +
-/// a^2), as the weight of a connection at 1 - cos = h goes with a^2 = 2 S C h.
+/// Lengths of connections whose direction is known: half of them are drawn in proportion to 1 / (low + offset + a)^2,
+/// which is that of 1 / ((low + offset)^2 + a^2) within a factor of two; the weight of a connection at 1 - cos = h goes
+/// with this and a^2 = 2 S C h.
 template <typename Real>
 struct LengthAlong {
     ConnectionLength<Real> lengths;
@@ -83,25 +84,16 @@ struct LengthAlong {
 
     /// u in [0, 1).
     [[nodiscard]] typename ConnectionLength<Real>::Draw sample(Real u) const {
-        const Real offset =
-            u < Real(0.5) ? lengths.sample(2 * u).offset : std::min(sampleAngle((2 * u - 1) * angle()), lengths.width);
+        const Real first = lengths.low + a, part = (2 * u - 1) * lengths.width;
+        const Real offset = u < Real(0.5) ? lengths.sample(2 * u).offset
+                                          : std::min(first * part / (first + lengths.width - part), lengths.width);
         return {offset, 1 / pdf(offset)};
     }
     /// Density per length.
     [[nodiscard]] Real pdf(Real offset) const {
         if (!(offset >= 0) || offset > lengths.width) return 0;
-        const Real excess = lengths.low + offset;
-        return Real(0.5) * (lengths.pdf(offset) + a / ((excess * excess + a * a) * angle()));
-    }
-
-  private:
-    /// Between the ends, seen from beside `low` = 0 at the distance a.
-    [[nodiscard]] Real angle() const {
-        return std::atan2(lengths.width * a, a * a + lengths.low * (lengths.low + lengths.width));
-    }
-    [[nodiscard]] Real sampleAngle(Real turn) const {
-        const Real sine = std::sin(turn);
-        return sine * (a * a + lengths.low * lengths.low) / (a * std::cos(turn) - lengths.low * sine);
+        const Real first = lengths.low + a, part = first / (first + offset);
+        return Real(0.5) * (lengths.pdf(offset) + part * part * (1 / first + 1 / lengths.width));
     }
 };
 

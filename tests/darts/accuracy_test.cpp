@@ -115,22 +115,22 @@ TEST(Accuracy, LobesOfAllLengths) {
         for (const float relativeWidth : {1e-6f, 1e-3f, 0.5f, 100.0f})
             for (const float relativeLow : {0.0f, 1e-3f, 30.0f}) {
                 const float width = relativeWidth * C, low = relativeLow * width;
-                const OpenGateLobe<float> open(C, C + low + 0.5f * width, width);
+                const UniformLengthLobe<float> all(C, low, width);
                 const GateLobe<float> gate(C, low, width);
-                const Exact S = Exact(C) + low + Exact(width) / 2;
-                const Exact k = 2 / ExactPi * width / sqrt(2 * S * C), range = log1p(sqrt(Exact(2)) / k);
+                const Exact S = Exact(C) + low + Exact(width) / 2, scale = 1 / sqrt(2 * S * C);
+                const Exact k = 2 / ExactPi * width * scale, start = Exact(low) * scale;
+                const Exact range = log((k + sqrt(2 + start * start)) / (k + start));
                 const Exact delta = Exact(low) + Exact(width) / 2, kappa = delta * delta / (2 * C * S);
-                const Exact share = Exact(width) / (4 * (Exact(low) + width));
                 SCOPED_TRACE(testing::Message() << "C " << C << " low " << low << " width " << width);
                 for (const float u : {1e-7f, 0.1f, 0.5f, 0.9f}) {
-                    const Exact x = k * expm1(u * range);
-                    EXPECT_TRUE(near(open.sample(u), x * x)) << u;
+                    const Exact y = (k + start) * expm1(u * range) + start;
+                    EXPECT_TRUE(near(all.sample(u), y * y - start * start)) << u;
                 }
                 for (const float h : {1e-12f, 1e-6f, 0.1f, 1.0f, 2.0f}) {
-                    const Exact x = sqrt(Exact(h)), ofOpen = 1 / (4 * ExactPi * x * (k + x) * range);
+                    const Exact y = sqrt(h + start * start), ofAll = 1 / (4 * ExactPi * y * (k + y) * range);
                     const Exact middle = 1 / (2 * ExactPi * (kappa + h) * log1p(2 / kappa));
-                    EXPECT_TRUE(near(open.pdf(h), ofOpen)) << h;
-                    EXPECT_TRUE(near(gate.pdf(h), share * ofOpen + (1 - share) * middle)) << h;
+                    EXPECT_TRUE(near(all.pdf(h), ofAll)) << h;
+                    EXPECT_TRUE(near(gate.pdf(h), (ofAll + middle) / 2)) << h;
                 }
             }
 }
@@ -141,18 +141,19 @@ TEST(Accuracy, LengthAlong) {
             for (const float relativeA : {1e-4f, 0.1f, 3.0f, 1e3f}) {
                 const float low = relativeLow * width, a = relativeA * width;
                 const LengthAlong<float> length{{low, width, 0.0f}, a};
-                const Exact angle = atan(Exact(low + Exact(width)) / a) - atan(Exact(low) / a);
+                const Exact first = Exact(low) + a, last = first + width;
                 SCOPED_TRACE(testing::Message() << "width " << width << " low " << low << " a " << a);
                 for (const float u : {1e-6f, 0.1f, 0.5f, 0.9f}) {
                     const float number = 0.5f + 0.5f * u;
-                    const Exact offset = a * tan(atan(Exact(low) / a) + Exact(2 * number - 1) * angle) - low;
-                    EXPECT_TRUE(near(length.sample(number).offset, offset)) << u;
+                    const Exact part = Exact(2 * number - 1);
+                    EXPECT_TRUE(near(length.sample(number).offset, 1 / ((1 - part) / first + part / last) - first))
+                        << u;
                 }
                 for (const float part : {0.0f, 1e-6f, 0.3f, 1.0f}) {
                     const float offset = part * width;
-                    const Exact excess = Exact(low) + offset;
-                    EXPECT_TRUE(near(length.pdf(offset),
-                                     (1 / Exact(width) + a / ((excess * excess + Exact(a) * a) * angle)) / 2))
+                    const Exact excess = first + offset;
+                    EXPECT_TRUE(
+                        near(length.pdf(offset), (1 / Exact(width) + first * last / (width * excess * excess)) / 2))
                         << part;
                 }
             }

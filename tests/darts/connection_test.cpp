@@ -145,21 +145,25 @@ TEST(ConnectionLobe, PhotonLobeSamplesItsDensity) {
 }
 
 TEST(ConnectionLobe, LobesOfAllLengthsSampleTheirDensity) {
-    testLobe([](double C, double delta) { return OpenGateLobe<double>(C, C + 0.5 * delta, delta); });
-    for (const double low : {0.0, 0.1, 20.0})
+    for (const double low : {0.0, 0.1, 20.0}) {
+        testLobe([low](double C, double delta) { return UniformLengthLobe<double>(C, low * delta, delta); });
         testLobe([low](double C, double delta) { return GateLobe<double>(C, low * delta, delta); });
+    }
 }
 
-/// Of lengths evenly up to a width, integrated over them.
-TEST(ConnectionLobe, TheOpenGatesIsTheMeanOfPathLobesWeights) {
-    const double C = 1.3, width = 0.02, S = C + 0.5 * width;
-    const OpenGateLobe<double> lobe(C, S, width);
-    double least = INFINITY, most = 0.0;
-    for (const double h : {1e-10, 1e-7, 1e-5, 1e-4, 1e-3, 0.1, 2.0}) {
-        const double a = std::sqrt(2.0 * S * C * h), ratio = lobe.pdf(h) * a / std::atan(width / a);
-        least = std::min(least, ratio), most = std::max(most, ratio);
+TEST(ConnectionLobe, ThatOfUniformLengthsIsTheMeanOfPathLobesWeights) {
+    const double C = 1.3, width = 0.02;
+    for (const double low : {0.0, 0.003, 0.02, 0.5}) {
+        const double S = C + low + 0.5 * width;
+        const UniformLengthLobe<double> lobe(C, low, width);
+        double least = INFINITY, most = 0.0;
+        for (const double h : {1e-10, 1e-7, 1e-5, 1e-4, 1e-3, 0.1, 2.0}) {
+            const double a = std::sqrt(2.0 * S * C * h);
+            const double weight = (std::atan((low + width) / a) - std::atan(low / a)) / a, ratio = lobe.pdf(h) / weight;
+            least = std::min(least, ratio), most = std::max(most, ratio);
+        }
+        EXPECT_LT(most, 1.75 * least) << low;
     }
-    EXPECT_LT(most, 1.3 * least);
 }
 
 TEST(ConnectionLobe, PathLobeCancelsTheConnectionWeight) {

@@ -356,10 +356,10 @@ FAULTS = [
      [("path_tests", "PlainTrail.*")]),  # plain paths' densities forget roulette and splits
     ("src/transport/SharePilot.cpp", "pixel.squaredMean += half[0] * half[1] * double(PathsOfPixel);", ";",
      [("path_tests", "SharePilot.*")]),  # the pilot takes second moments for variances
-    ("src/darts/ControlVertex.h", "return Real(0.5) * (lengths.pdf(offset) + a /", "return (lengths.pdf(offset) + a /",
+    ("src/darts/ControlVertex.h", "return Real(0.5) * (lengths.pdf(offset) + part", "return (lengths.pdf(offset) + part",
      [("darts_tests", "LengthAlong.SamplesFollowTheDensity")]),  # connections along a way are twice as dense as they are
-    ("src/darts/ConnectionLobe.h", "share_ * open_.pdf(h) + (1 - share_) * middle_.pdf(h)", "middle_.pdf(h)",
-     [("darts_tests", "ConnectionLobe.LobesOfAllLengthsSampleTheirDensity")]),  # the open gate's directions are drawn, and no density knows of it
+    ("src/darts/ConnectionLobe.h", "return Real(0.5) * (all_.pdf(h) + middle_.pdf(h));", "return middle_.pdf(h);",
+     [("darts_tests", "ConnectionLobe.LobesOfAllLengthsSampleTheirDensity")]),  # directions for all lengths are drawn, and no density knows of it
     ("src/path/PlainTrail.h", "logOf(window) + std::log(targets_->probability(emitter));", "logOf(window);",
      [("path_tests", "Scenes/Balanced.MeansAreTheSameAtAnyShare/TwoLampsMetAndConnectedTo")]),  # plain paths that meet a lamp take it for that of all guided ones
     ("src/path/PlainTrail.h", "(open ? logs.openEnding : logs.ending) + logOf(window);", "(open ? logs.openEnding : logs.ending);",
