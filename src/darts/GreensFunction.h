@@ -28,12 +28,12 @@ struct CausalGreensFunction {
 
     [[nodiscard]] Real log(Real u, Real s) const {
         if (!(u > 0)) return -std::numeric_limits<Real>::infinity();
-        const Real meanFreePaths = s * sigmaS, logU = std::log(u);
-        const Real x = meanFreePaths * std::exp(Real(0.75) * logU);
+        const Real meanFreePaths = s * sigmaS, r = std::sqrt(u), q = std::sqrt(r);
+        const Real less = (1 - u) * (r + q + 1) / ((q + 1) * (r + 1)); // 1 - u^{3/4}, exact towards u = 1
+        constexpr Real Normalisation = Real(-2.148617937451772);       // -3/2 log(4 pi / 3)
         // One exponent, -(s/l)(1 - u^{3/4}): two would overflow and underflow against each other.
-        return Real(-1.5) * std::log(Real(4 * 3.14159265358979323846L / 3) * s / sigmaS) -
-               Real(0.5) * std::log(meanFreePaths) - Real(0.25) * logU + Real(0.5) * std::log(x + Real(2.026)) +
-               meanFreePaths * std::expm1(Real(0.75) * logU) - sigmaA * s;
+        return Normalisation + std::log(sigmaS / (s * s)) +
+               Real(0.5) * std::log((meanFreePaths * r * q + Real(2.026)) / r) - meanFreePaths * less - sigmaA * s;
     }
 };
 

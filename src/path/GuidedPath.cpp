@@ -75,9 +75,9 @@ bool GuidedVisitor::arrive(PathState& path, StepsToEmitter& steps, const Ahead& 
     if (flight.event == Flight::Event::Surface)
         return limits().mayGoOn(path.interactions) && !limits().endsAtSurface(path.mediumScatters);
     const GuidedPath guided = at(path, steps);
-    const bool connects = !steps.hasDensities() || guided.wayInTime(path.ray.origin, path.time);
-    inMedium_ =
-        connects ? ControlVertices::ending(guided, *ahead.medium, flight.distance) : StepsToEmitter::InMedium{1.0f};
+    inMedium_ = {0.0f, 1.0f};
+    if (steps.ownVerticesConnect() && (!steps.hasDensities() || guided.wayInTime(path.ray.origin, path.time)))
+        inMedium_ = ControlVertices::ending(guided, *ahead.medium, flight.distance);
     behind_.approachInMedium(*context_, path, flight.distance);
     return true;
 }

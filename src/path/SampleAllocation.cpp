@@ -38,19 +38,22 @@ void SampleAllocation::tell(size_t block, double variance, double cost) {
 
 auto SampleAllocation::smoothed(const Blocks& told, double pairs) const -> Blocks {
     Blocks smooth(told.size());
+    const auto isInside = [](int at, int cells) { return at >= 0 && at < cells; };
     for (int y = 0; y < grid_.y; ++y)
         for (int x = 0; x < grid_.x; ++x) {
-            Block& sum = smooth[size_t(y) * size_t(grid_.x) + size_t(x)];
-            for (int reach = 1; sum.pairs < pairs && reach < std::max(grid_.x, grid_.y); ++reach) {
-                sum = {};
-                for (int j = std::max(y - reach, 0); j <= std::min(y + reach, grid_.y - 1); ++j)
-                    for (int i = std::max(x - reach, 0); i <= std::min(x + reach, grid_.x - 1); ++i) {
-                        const Block& near = told[size_t(j) * size_t(grid_.x) + size_t(i)];
-                        sum = {sum.variance + near.variance, sum.cost + near.cost, sum.pairs + near.pairs};
-                    }
-            }
+            Block sum;
+            const auto add = [&](int i, int j) {
+                if (!isInside(i, grid_.x) || !isInside(j, grid_.y)) return;
+                const Block& near = told[size_t(j) * size_t(grid_.x) + size_t(i)];
+                sum = {sum.variance + near.variance, sum.cost + near.cost, sum.pairs + near.pairs};
+            };
+            // Squares about the block, one ring after the other.
+            for (int reach = 0; reach < 2 || (sum.pairs < pairs && reach < std::max(grid_.x, grid_.y)); ++reach)
+                for (int j = -reach; j <= reach; ++j)
+                    for (int i = -reach; i <= reach; i += std::abs(j) < reach && reach > 0 ? 2 * reach : 1)
+                        add(x + i, y + j);
             const double of = std::max(sum.pairs, 1.0);
-            sum = {sum.variance / of, sum.cost / of, sum.pairs};
+            smooth[size_t(y) * size_t(grid_.x) + size_t(x)] = {sum.variance / of, sum.cost / of, sum.pairs};
         }
     return smooth;
 }

@@ -341,11 +341,14 @@ ShellChord StepsToEmitter::controlChord(const Ray& ray, const Region& region, fl
 }
 
 auto StepsToEmitter::inMedium(float distance) const -> InMedium {
+    return inMedium(distance, controlVertexDensity(distance));
+}
+
+auto StepsToEmitter::inMedium(float distance, float control) const -> InMedium {
     const float plain = this->plain().pdf(distance);
-    InMedium ending{vertexDensity(distance), controlVertexDensity(distance)};
+    InMedium ending{ownVerticesConnect() ? vertexDensity(distance) : 0.0f, control};
     // Own vertices that guided paths do not go on from do not connect either.
-    if ((passage_ == Passage::Medium && budget().model == darts::EscapeModel::Infinite && guided_->bound.oneSpeed()) ||
-        guided_->balance.endsGuided(start_.logRatio + logOfQuotient(ending.own, plain)))
+    if (ending.own > 0.0f && guided_->balance.endsGuided(start_.logRatio + logOfQuotient(ending.own, plain)))
         ending.own = 0.0f;
     ending.logRatio = start_.logRatio + logOfQuotient(ending.own + ending.control, plain);
     return ending;
@@ -378,7 +381,8 @@ int StepsToEmitter::copies(PathState& path, const WalkVertex& vertex) {
         if (!(path.random.next1D() < survival)) return 0;
         path.throughput = path.throughput / survival;
     }
-    if (hasDensities()) path.logRatio += std::log(survival * float(copies));
+    const float mean = survival * float(copies);
+    if (hasDensities() && mean != 1.0f) path.logRatio += std::log(mean);
     return copies;
 }
 

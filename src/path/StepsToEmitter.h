@@ -101,6 +101,13 @@ class StepsToEmitter : public transport::GuidedSteps {
     // Logarithms of densities, guided over plain, for the flight at hand and for paths that end on it:
     /// Own vertices that connect, control vertices that are traced.
     [[nodiscard]] InMedium inMedium(float distance) const;
+    /// The same where control vertices have a density that is known.
+    [[nodiscard]] InMedium inMedium(float distance, float control) const;
+    /// Own vertices in the medium at hand connect; elsewhere control vertices bring all of that light.
+    [[nodiscard]] bool ownVerticesConnect() const {
+        return passage_ != Passage::Medium || budget().model != darts::EscapeModel::Infinite ||
+               !guided_->bound.oneSpeed() || !drawsControlVertices();
+    }
     /// A path whose last vertex is the surface ahead, which guided paths see whether or not they go there.
     [[nodiscard]] float logRatioOnSurface() const;
     /// A plain path's way up to the end of its flight.

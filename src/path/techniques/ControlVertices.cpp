@@ -25,7 +25,7 @@ void add(const GuidedPath& path, const Medium& medium, const darts::ControlVerte
     const Visibility visibility = path.connector().visibility({position, way->direction, 0.0f, clear}, way->distance,
                                                               state.region, path.counters.shadowRays);
     if (isBlack(visibility.transmittance) || !visibility.oneSpeed || !path.counts(1 + visibility.crossings, 1)) return;
-    const auto ending = ControlVertices::ending(path, medium, vertex.distance);
+    const auto ending = ControlVertices::endingAt(path, medium, vertex, chance);
     const auto share = ConnectionsFromMedia::share(path, position, phase, ending);
     const float weight =
         phase / sqr(vertex.toTarget) * vertex.inversePdf * ending.shareOfControl() / chance * share.beside;
@@ -80,6 +80,13 @@ StepsToEmitter::InMedium ControlVertices::ending(const GuidedPath& path, const M
     const auto control = path.steps.controlVertexPdf(distance);
     return control ? StepsToEmitter::InMedium{ConnectionsFromMedia::density(medium, distance), *control}
                    : StepsToEmitter::InMedium{0.0f, 1.0f};
+}
+
+StepsToEmitter::InMedium ControlVertices::endingAt(const GuidedPath& path, const Medium& medium,
+                                                   const darts::ControlVertex& vertex, float chance) {
+    // A delta gate leaves no density per length.
+    if (!path.steps.hasDensities() || path.context.sensor.gate.delta) return ending(path, medium, vertex.distance);
+    return path.steps.inMedium(vertex.distance, chance / vertex.inversePdf);
 }
 
 } // namespace tungsten::path

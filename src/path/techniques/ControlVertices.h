@@ -13,6 +13,9 @@ struct ControlVertices {
     /// How densely paths are found that have their last vertex in the medium at `distance` along the ray: by control
     /// vertices, and by ordinary ones.
     [[nodiscard]] static StepsToEmitter::InMedium ending(const GuidedPath& path, const Medium& medium, float distance);
+    /// The same at a control vertex, which is traced by `chance`.
+    [[nodiscard]] static StepsToEmitter::InMedium endingAt(const GuidedPath& path, const Medium& medium,
+                                                           const darts::ControlVertex& vertex, float chance);
 };
 
 } // namespace tungsten::path

@@ -29,7 +29,7 @@ void ConnectionsFromMedia::connect(const GuidedPath& path, const Medium& medium,
 
 transport::TechniqueShare ConnectionsFromMedia::share(const GuidedPath& path, const Vec3f& position, float pdf,
                                                       const StepsToEmitter::InMedium& ending) {
-    if (!path.steps.hasDensities()) return {};
+    if (!path.steps.hasDensities() || path.target().emitter->isDelta()) return {};
     return path.target().shareOfConnection(position, pdf, path.steps.connectionsOverPlain(ending.logRatio));
 }
 
