@@ -76,41 +76,40 @@ LogLinearDistance::LogImportance LogLinearDistance::logImportance(Shape shape, b
 
 LogLinearDistance::LogLinearDistance(const CandidateDraw& draw, LogImportance importance) {
     using Register = RegisterOf<Nodes>;
-    const auto numbers = lanes::get<Register>(lanes::Count.values.data());
     const float end = draw.bound;
     // A surface ends what is in time; else importance falls to nothing there.
     const bool endsInTime = !(end < draw.firstLeg);
-    alignas(64) std::array<float, Nodes> at, log;
-    int count = 0;
-    const auto add = [&](float d) {
-        int i = count++;
-        for (; i > 0 && at[size_t(i) - 1] > d; --i) at[size_t(i)] = at[size_t(i) - 1];
-        at[size_t(i)] = d;
-    };
-    add(0.0f);
-    const float sigmaT = mean(draw.medium->sigmaT()), gone = -fastExpm1(-sigmaT * end);
-    // In thin media the quantiles of both are the same: those of the uniform distance fill the places between.
-    const bool thin = sigmaT * end < 0.3f;
-    alignas(64) std::array<float, Nodes> quantiles;
-    lanes::put(quantiles.data(), lanes::log(max(1.0f - gone * 0.25f * numbers, Register(0.25f))));
-    for (size_t j = 1; j <= 3; ++j) add(thin ? end * (float(j) - 0.5f) / 4.0f : std::min(-quantiles[j] / sigmaT, end));
     const float kink = draw.kink > 1e-6f * end && draw.kink < end * (1.0f - 1e-6f) ? draw.kink : 0.95f * end;
-    add(kink);
     const float left = 1.0f - kink / end;
     const bool near = endsInTime && left < 0.2f / float(Nodes);
-    for (int j = 1; count < Nodes - (near || !endsInTime ? 1 : 0); ++j)
-        add(end * float(j) / (endsInTime && !near ? 4.0f : 3.0f));
-    if (near) add(end * (1.0f - std::sqrt(left / float(Nodes))));
-    if (!endsInTime) add(end);
-    importance(draw, at.data(), log.data());
+    alignas(64) std::array<float, Nodes> log;
+    // Uniform distances, the kink, and in short ranges behind it a place where importance falls; or the surface.
+    const float each = end * (endsInTime && !near ? 1.0f / 4 : 1.0f / 3);
+    const float last = !endsInTime ? end : near ? end * (1.0f - std::sqrt(left / float(Nodes))) : 3.0f * each;
+    constexpr float None = std::numeric_limits<float>::max();
+    std::array<float, Nodes> at{0.0f, each, 2.0f * each, last, None, None, None, None};
+    const auto add = [&at](float d) { // into ascending ones, of which the first stays
+        for (size_t i = Nodes - 1; i > 0; --i) at[i] = std::max(at[i - 1], std::min(at[i], d));
+    };
+    add(kink);
+    // Quantiles of the free flight, within a few per cent. In thin media they would be those of the uniform distance:
+    // these fill the places between.
+    const float sigmaT = mean(draw.medium->sigmaT()), depth = sigmaT * end;
+    constexpr std::array<float, 3> Deep{0.28768207f, 0.69314718f, 1.38629436f}; // in mean free paths, if all end
+    for (size_t j = 0; j < 3; ++j) {
+        const float even = float(j + 1) / 4.0f;
+        add(end *
+            (depth < 0.3f ? even - 0.125f : Deep[j] / std::sqrt(depth * depth + (Deep[j] / even) * (Deep[j] / even))));
+    }
+    for (size_t i = 0; i < Nodes; ++i) nodes_[i] = at[i];
+    importance(draw, nodes_.data(), log.data());
     intervals_ = endsInTime ? Nodes : Nodes - 1;
-    const Register here = lanes::get<Register>(at.data());
+    const Register here = lanes::get<Register>(nodes_.data());
     const Register powers = draw.power * lanes::get<Register>(log.data()) - ((1.0f - draw.power) * sigmaT) * here;
     const Register least = min(Register(LeastLog), -smallest(draw.medium->sigmaT()) * here);
-    lanes::put(nodes_.data(), here);
     lanes::put(logs_.data(), Register(max(powers - lanes::most(powers), least)));
     nodes_[Nodes] = end;
-    logs_[Nodes] = logs_[Nodes - 1] - (draw.falls ? FallToBound : sigmaT * (end - at[Nodes - 1]));
+    logs_[Nodes] = logs_[Nodes - 1] - (draw.falls ? FallToBound : sigmaT * (end - nodes_[Nodes - 1]));
     // Behind a surface the last interval has no width.
     const Register logs = lanes::get<Register>(logs_.data()), nextLogs = Register::load_unaligned(&logs_[1]);
     const Register value = lanes::exp(logs), next = lanes::exp(nextLogs), rise = nextLogs - logs;
@@ -122,7 +121,7 @@ LogLinearDistance::LogLinearDistance(const CandidateDraw& draw, LogImportance im
     sum_ = lanes::sum(masses);
 }
 
-float LogLinearDistance::sample(float u) const {
+auto LogLinearDistance::sample(float u) const -> Draw {
     float rest = u * sum_;
     int i = 0;
     while (i < intervals_ - 1 && !(rest < masses_[size_t(i)])) rest -= masses_[size_t(i++)];
@@ -130,9 +129,11 @@ float LogLinearDistance::sample(float u) const {
     for (; i > 0 && masses_[size_t(i)] < LeastMass * sum_; --i) rest = sum_;
     const auto k = size_t(i);
     const float part = masses_[k] > 0.0f ? std::clamp(rest / masses_[k], 0.0f, BelowOne) : 0.0f, rise = slope(i);
-    const float along = std::abs(rise) < 1e-5f ? part : fastLog1p(part * fastExpm1(rise)) / rise;
+    // Along the interval e^{rise x} has this part of its integral, and grows in proportion to it.
+    const float growth = fastExpm1(rise);
+    const float along = std::abs(rise) < 1e-5f ? part : fastLog1p(part * growth) / rise;
     const float d = nodes_[k] + (nodes_[k + 1] - nodes_[k]) * std::clamp(along, 0.0f, 1.0f);
-    return std::min(d, nodes_[size_t(intervals_)] * BelowOne);
+    return {std::min(d, nodes_[size_t(intervals_)] * BelowOne), std::exp(logs_[k]) * (1.0f + part * growth) / sum_};
 }
 
 float LogLinearDistance::pdf(float distance) const {
@@ -260,8 +261,8 @@ DistanceSample DistanceSampler::sample(const DistanceDensity& density, float sur
         return {surface, true, transmittance(surface) * (1.0f / density.surface()), density.surface()};
     const auto drawn = density.sample(choice);
     if (!drawn) return {};
-    const float pdf = density.pdf(*drawn);
-    return {*drawn, false, transmittance(*drawn) * (pdf > 0 ? 1.0f / pdf : 0.0f), pdf};
+    const auto [distance, pdf] = *drawn;
+    return {distance, false, transmittance(distance) * (pdf > 0 ? 1.0f / pdf : 0.0f), pdf};
 }
 
 DistanceSample DistanceSampler::sample(const TimeBudget& budget, const Heading& ray, float surface,

@@ -28,8 +28,12 @@ class LogLinearDistance {
     /// `draw.bound` > 0.
     LogLinearDistance(const CandidateDraw& draw, LogImportance importance);
 
-    /// u in [0, 1) -> distance in [0, bound).
-    [[nodiscard]] float sample(float u) const;
+    struct Draw {
+        float distance; ///< in [0, bound)
+        float pdf;      ///< there
+    };
+    /// u in [0, 1)
+    [[nodiscard]] Draw sample(float u) const;
     /// Per length; 0 from the bound on.
     [[nodiscard]] float pdf(float distance) const;
 
@@ -75,9 +79,11 @@ class DistanceDensity {
     [[nodiscard]] float pdf(float distance) const {
         return medium_ ? (1.0f - surface_) * medium_->pdf(distance) : 0.0f;
     }
-    /// In the medium, by its own density.
-    [[nodiscard]] std::optional<float> sample(float u) const {
-        return medium_ ? std::optional(medium_->sample(u)) : std::nullopt;
+    /// In the medium, with the density there.
+    [[nodiscard]] std::optional<LogLinearDistance::Draw> sample(float u) const {
+        if (!medium_) return std::nullopt;
+        const auto [distance, pdf] = medium_->sample(u);
+        return LogLinearDistance::Draw{distance, (1.0f - surface_) * pdf};
     }
 
   private:

@@ -86,13 +86,14 @@ TEST(LogLinearDistance, SamplesFollowTheDensityWhichIntegratesToOne) {
         EXPECT_EQ(distance.pdf(-1e-3f), 0.0f);
         // The last numbers there are lead nowhere that is less likely than they are.
         for (const float u : {BelowOne, 1.0f - 2 * 0x1p-24f, 1.0f - 3 * 0x1p-24f})
-            EXPECT_GT(density(double(distance.sample(u))) * bound, 1e-9) << u;
+            EXPECT_GT(density(double(distance.sample(u).distance)) * bound, 1e-10) << u;
         edges.back() = bound * 1.000001;
         const double p = tungsten::test::chiSquareInterval(
             [&](Sampler& s) {
-                const float d = distance.sample(s.next1D());
+                const auto [d, pdf] = distance.sample(s.next1D());
                 EXPECT_TRUE(d >= 0.0f && d < drawn.draw.bound) << d;
-                EXPECT_GT(distance.pdf(d), 0.0f) << d;
+                EXPECT_GT(pdf, 0.0f) << d;
+                EXPECT_NEAR(distance.pdf(d), pdf, 1e-3f * pdf) << d;
                 return double(d);
             },
             density, edges, 13, 20000);
@@ -125,7 +126,7 @@ TEST(LogLinearDistance, RegistersAndSingleNodesAgree) {
     forEveryDraw([](const Drawn& drawn, Shape shape) {
         const LogLinearDistance wide = drawn.distance(shape), single = drawn.distance(shape, true);
         for (int i = 0; i < 100; ++i) {
-            const float u = (float(i) + 0.5f) / 100.0f, d = single.sample(u);
+            const float u = (float(i) + 0.5f) / 100.0f, d = single.sample(u).distance;
             // Of exponents up to 57: importance in registers is right to 3e-3 for bodies, else to a few 1e-6.
             const float bound = shape == Shape::FirstPassage ? 6e-3f : 3e-4f;
             EXPECT_NEAR(wide.pdf(d) / single.pdf(d), 1.0f, bound) << d;
@@ -144,7 +145,7 @@ TEST(LogLinearDistance, ByTimeAloneIsTheTruncatedExponential) {
                          all = -std::expm1(-sigmaT * bound);
             for (int i = 0; i < 200; ++i) {
                 const double u = (i + 0.5) / 200.0, d = -std::log1p(-u * all) / sigmaT;
-                EXPECT_NEAR(double(distance.sample(float(u))) / d, 1.0, 2e-5) << depth << " " << u;
+                EXPECT_NEAR(double(distance.sample(float(u)).distance) / d, 1.0, 2e-5) << depth << " " << u;
                 EXPECT_NEAR(double(distance.pdf(float(d))) * all / (sigmaT * std::exp(-sigmaT * d)), 1.0, 2e-5)
                     << depth << " " << d;
             }
@@ -192,9 +193,10 @@ TEST(LogLinearDistance, IsInProportionToUsefulnessAtItsNodes) {
             const Drawn drawn(true, depth, 0.4f, 0.0f);
             const LogLinearDistance distance = drawn.distance(shape);
             alignas(64) std::array<float, LogLinearDistance::Nodes> at{}, logs{};
-            const float gone = -std::expm1(-depth);
-            for (size_t j = 0; j < 3; ++j)
-                at[j + 1] = -std::log1p(-gone * float(j + 1) / 4.0f) * drawn.draw.bound / depth;
+            for (size_t j = 0; j < 3; ++j) {
+                const float even = float(j + 1) / 4.0f, deep = -std::log1p(-even);
+                at[j + 1] = deep * drawn.draw.bound / std::hypot(depth, deep / even);
+            }
             LogLinearDistance::logImportance(shape, true)(drawn.draw, at.data(), logs.data());
             for (size_t j = 0; j < 4; ++j)
                 EXPECT_NEAR(std::log(distance.pdf(at[j]) / distance.pdf(0.0f)), logs[j] - logs[0], 2e-4f)
