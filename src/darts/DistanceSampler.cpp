@@ -216,14 +216,12 @@ Shape DistanceSampler::shapeFor(const TimeBudget& budget) const {
     return budget.escape.straightExit ? Shape::FirstPassage : Shape::TimeBound;
 }
 
-auto DistanceSampler::surfaceEvent(const TimeBudget& budget, float surface, float firstLeg,
-                                   const Vec3& throughput) const -> SurfaceEvent {
+auto DistanceSampler::surfaceEvent(float surface, float firstLeg, const Vec3& throughput) const -> SurfaceEvent {
     if (!((surface < firstLeg || !settings_.bounded) && surface < std::numeric_limits<float>::infinity())) return {};
     const Vec3 reaching = transmittance(surface);
     const float total = throughput.x + throughput.y + throughput.z;
     const float natural = !scatters_ ? 1.0f : grey_ || !(total > 0) ? reaching.x : dot(throughput, reaching) / total;
-    const float likely = natural * budget.surfaceOdds;
-    return {likely / (likely + (1.0f - natural)), reaching};
+    return {natural, reaching};
 }
 
 CandidateDraw DistanceSampler::drawOf(const TimeBudget& budget, const Heading& ray, const Ellipse<float>& latest,
@@ -246,14 +244,18 @@ DistanceDensity DistanceSampler::density(const TimeBudget& budget, const Heading
                                          const Vec3& throughput) const {
     const Ellipse<float> latest = budget.latest(ray.h);
     const float firstLeg = latest.firstLeg(), bound = std::min(surface, firstLeg);
-    const SurfaceEvent event = surfaceEvent(budget, surface, firstLeg, throughput);
+    const SurfaceEvent event = surfaceEvent(surface, firstLeg, throughput);
     if (!scatters_ || !(event.probability < 1.0f) || !(bound > 0)) return DistanceDensity(event.probability);
     CandidateDraw draw = drawOf(budget, ray, latest, bound, throughput);
     if (budget.low > 0) draw.kink = Ellipse<float>{budget.C, budget.low, ray.h}.firstLeg();
     const Shape shape = shapeFor(budget);
     if (shape == Shape::FirstPassage) draw.power = PowerOutside;
     draw.falls = shape != Shape::TimeBound || draw.overlap;
-    return {event.probability, draw, importance_[size_t(shape)]};
+    DistanceDensity density(event.probability, draw, importance_[size_t(shape)]);
+    // Photons are gathered where they meet surfaces, too, wherever the camera is.
+    const bool unbounded = shape == Shape::Diffusion || shape == Shape::Causal;
+    if (unbounded && settings_.lobe == Lobe::Path) density.weighSurface(mean(medium_.sigmaS));
+    return density;
 }
 
 DistanceSample DistanceSampler::sample(const DistanceDensity& density, float surface, float event, float choice) const {
@@ -272,7 +274,7 @@ DistanceSample DistanceSampler::sample(const TimeBudget& budget, const Heading& 
         return this->sample(density(budget, ray, surface, throughput), surface, random.event, random.choice);
     const Ellipse<float> latest = budget.latest(ray.h);
     const float firstLeg = latest.firstLeg();
-    const SurfaceEvent event = surfaceEvent(budget, surface, firstLeg, throughput);
+    const SurfaceEvent event = surfaceEvent(surface, firstLeg, throughput);
     if (event.probability > 0 && random.event < event.probability)
         return {surface, true, event.reaching * (1.0f / event.probability)};
     const float bound = settings_.bounded ? std::min(surface, firstLeg) : surface;

@@ -5,6 +5,7 @@
 #include "darts/Settings.h"
 
 #include <array>
+#include <cmath>
 #include <optional>
 #include <utility>
 
@@ -36,6 +37,12 @@ class LogLinearDistance {
     [[nodiscard]] Draw sample(float u) const;
     /// Per length; 0 from the bound on.
     [[nodiscard]] float pdf(float distance) const;
+    /// Importance of the surface at the bound over that of all draws: of light that goes on from there, beside what
+    /// scatters before by `sigmaS` a length.
+    [[nodiscard]] float partOfEnd(float sigmaS) const {
+        const float end = std::exp(logs_[size_t(intervals_)]);
+        return end / (end + sigmaS * sum_);
+    }
 
   private:
     [[nodiscard]] float slope(int i) const { return logs_[size_t(i) + 1] - logs_[size_t(i)]; }
@@ -75,6 +82,14 @@ class DistanceDensity {
 
     /// Probability of the surface; the rest is the medium's, unless nothing there can be in time.
     [[nodiscard]] float surface() const { return surface_; }
+    /// All but a tenth of the flights choose between surface and medium by the importance of either: so none of them is
+    /// drawn ten times less often than by free flights. (Variance of guided paths with a half, nine tenths and all:
+    /// cornell-fog 0.93, 0.85, 0.85, scattering 1.0 0.85, 0.76, 0.75, two rooms 0.99, 0.86, 0.86. Bench: study
+    /// scattering and bodies, paths.)
+    void weighSurface(float sigmaS) {
+        constexpr float Natural = 0.1f;
+        if (medium_ && surface_ > 0.0f) surface_ = Natural * surface_ + (1.0f - Natural) * medium_->partOfEnd(sigmaS);
+    }
     /// Per length.
     [[nodiscard]] float pdf(float distance) const {
         return medium_ ? (1.0f - surface_) * medium_->pdf(distance) : 0.0f;
@@ -119,13 +134,12 @@ class DistanceSampler {
     [[nodiscard]] Vec3 transmittance(float distance) const;
 
   private:
-    /// The event at the surface: its probability, and of a free flight that of getting there.
+    /// The event at the surface as free flights have it: its probability, and that of getting there by channel.
     struct SurfaceEvent {
         float probability = 0;
         Vec3 reaching;
     };
-    [[nodiscard]] SurfaceEvent surfaceEvent(const TimeBudget& budget, float surface, float firstLeg,
-                                            const Vec3& throughput) const;
+    [[nodiscard]] SurfaceEvent surfaceEvent(float surface, float firstLeg, const Vec3& throughput) const;
     /// What a draw of distances in the medium needs, up to a bound above 0.
     [[nodiscard]] CandidateDraw drawOf(const TimeBudget& budget, const Heading& ray, const Ellipse<float>& latest,
                                        float bound, const Vec3& throughput) const;

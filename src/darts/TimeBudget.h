@@ -51,7 +51,6 @@ struct TimeBudget {
     double shortest = 0; ///< max(S_lo, C): the range's lower end as a length, in double
     EscapeModel model = EscapeModel::Infinite; ///< which model shapes the sampling; any is exact
     EscapeGeometry escape;                     ///< of EscapeModel::Bounded
-    float surfaceOdds = 1; ///< factor on the odds of a flight's end at the surface ahead against scattering before it
 
     /// `toTarget` = target - position.
     static TimeBudget of(const Vec3& toTarget, const LengthInterval& range) {

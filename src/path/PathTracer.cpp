@@ -23,7 +23,6 @@ constexpr size_t TileSide = 8;
 constexpr double PilotFrame = 10.0;            ///< nanoseconds for each frame of a path in that pilot
 constexpr uint32_t MostSamplePairs = 1u << 16; ///< in a pilot of samples
 constexpr double PilotPart = 0.35;             ///< of the cost of a pilot of shares: those of samples and of windows
-constexpr double SurfaceOddsPart = 0.1;        ///< of the same: a pilot of the odds of surfaces in view
 constexpr uint32_t SamplesPerPoll = 16;
 constexpr double LightPathsPart = 0.1; ///< of a pass
 /// Multiples of it, modulo 1, fill the unit interval evenly from any place on.
@@ -222,8 +221,8 @@ void PathTracer::tracePlain(const PathContext& context, const Ray& ray, PixelAcc
 
 GuidedContext PathTracer::guidedContext(const ProgressToken& watch) const {
     const TargetChoice* pointTargets = settings_.policy.sampling.published ? nullptr : &*targets_;
-    return {*scene_,       settings_, sensor_,  *windows_,    guides_,     lightCaches_, *bound_, escapeModels_.get(),
-            looksThrough_, watch,     balance_, pointTargets, surfaceOdds_};
+    return {*scene_, settings_,           sensor_,       *windows_, guides_,  lightCaches_,
+            *bound_, escapeModels_.get(), looksThrough_, watch,     balance_, pointTargets};
 }
 
 PathContext PathTracer::plainContext(const ProgressToken& watch) const {
@@ -447,45 +446,10 @@ PathCosts PathTracer::costs(const StrategyCounters& counters) const {
         cost(counters.guided, tuning::Nanoseconds.guided)};
 }
 
-float PathTracer::measureSurfaceOdds(const ProgressToken& watch) const {
-    constexpr uint64_t Key = transport::PilotKey;
-    FirstFlight first;
-    GuidedContext guided = guidedContext(watch);
-    guided.firstFlight = &first;
-    PathCounters counters;
-    SharePilot pilot;
-    Sampler places(Key, RandomStream::Pilot, 4, 0);
-    // A path finds x. With p the probability that its first flight ends at a surface, odds k times as good make of the
-    // variance, but for what does not depend on k, E[p (1 - p) (E[x^2 | surface] / k + k E[x^2 | medium])].
-    double ofSurfaces = 0.0, ofMedia = 0.0, found = 0.0, met = 0.0;
-    for (uint32_t i = 0; i < transport::tuning::MostPilotPaths; ++i) {
-        if (i >= transport::tuning::LeastPilotPaths && met == 0.0) return 1.0f;
-        if (cost(counters, tuning::Nanoseconds.guided) > SurfaceOddsPart * double(transport::tuning::MostPilotCost))
-            break;
-        const Vec2i pixel = pixelAt(scene_->camera, places.next2D());
-        Sampler sampler(Key, RandomStream::Pilot, 5, i);
-        const Vec2f uFilter = sampler.next2D(), uLens = sampler.next2D();
-        const Ray ray = scene_->camera.generateRay(pixel, uFilter, uLens);
-        PixelAccumulator sink(pilot, sensor_, counters);
-        pilot.begin(Strategy::Guided);
-        first = {};
-        traceGuided(guided, places.next1D(), radicalInverse(i), ray, sink, counters, sampler);
-        const auto probability = double(first.probability);
-        const double other = first.atSurface ? 1.0 - probability : probability, squares = other * pilot.squaresOfLast();
-        (first.atSurface ? ofSurfaces : ofMedia) += squares;
-        found += squares > 0.0 ? 1.0 : 0.0;
-        met += probability * (1.0 - probability);
-    }
-    if (!(found > 0.0)) return 1.0f;
-    // Either may bring once more what a path that finds something does on average: no odds are 0, nor set by few paths.
-    const double unseen = (ofSurfaces + ofMedia) / found;
-    return float(std::sqrt((ofSurfaces + unseen) / (ofMedia + unseen)));
-}
-
 void PathTracer::chooseShare(const ProgressToken& watch, Statistics& statistics) {
     const std::optional<float> asked = settings_.policy.plainShare;
-    if (asked == 1.0f) {
-        balance_ = {1.0f, 0.0f};
+    if (asked == 0.0f || asked == 1.0f) {
+        balance_ = {*asked, 1.0f - *asked};
         return;
     }
     const StageTimer timer(statistics, "pilot of plain and guided paths");
@@ -499,12 +463,6 @@ void PathTracer::chooseShare(const ProgressToken& watch, Statistics& statistics)
         lightCaches_.trace(*scene_, *targets_, GuidedPaths, PassInfo{.seed = Key, .watch = watch}, ignored);
     }
     if (!targets_->any()) return;
-    surfaceOdds_ = measureSurfaceOdds(watch);
-    statistics.add("odds of surfaces in view, in thousandths", uint64_t(std::lround(1000.0 * double(surfaceOdds_))));
-    if (asked == 0.0f) {
-        balance_ = {0.0f, 1.0f};
-        return;
-    }
     const GuidedContext guided = guidedContext(watch);
     const PathContext plain = plainContext(watch);
     const auto width = uint64_t(scene_->camera.resolution.x), pixels = width * uint64_t(scene_->camera.resolution.y);

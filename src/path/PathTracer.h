@@ -59,8 +59,6 @@ class PathTracer : public Integrator {
     /// The window of time is chosen by the first number, the target by the second.
     void traceGuided(const GuidedContext& guided, float uWindow, float uTarget, const Ray& ray, PixelAccumulator& sink,
                      PathCounters& counters, Sampler& sampler) const;
-    /// Factor on the odds of surfaces in view against scattering before them that a few guided paths ask for.
-    [[nodiscard]] float measureSurfaceOdds(const ProgressToken& watch) const;
     /// How many paths are plain: by a pilot, unless the scene says (darts.plain_share).
     void chooseShare(const ProgressToken& watch, Statistics& statistics);
     /// Cost of what was counted, in nanoseconds.
@@ -87,7 +85,6 @@ class PathTracer : public Integrator {
     PathGuides guides_;
     StrategyBalance balance_;
     bool looksThrough_ = false;  ///< connections look through index-matched surfaces
-    float surfaceOdds_ = 1.0f;   ///< of surfaces in view (GuidedContext)
     double gainOfBalance_ = 1.0; ///< variance x cost of plain paths alone over that at this balance, by the pilot
     SampleAllocation allocation_;
     bool lightsInView_ = false;                                   ///< of plain paths alone: in expectation

@@ -213,7 +213,6 @@ Ahead StepsToEmitter::aheadInMedium(PathState& path, const Medium& medium, Asks 
     heading_ = headingOf(path.ray.direction);
     path.ray.tMax = bound(guide, heading_.h);
     const Ahead ahead{true, &medium, see(path.ray, known)};
-    setSurfaceOdds(path.interactions == 0 ? guided_->surfaceOdds : 1.0f);
     if (!hasDensities()) return ahead;
     distances_.emplace(guide.distance().density(reachable(), heading_, ahead.reach(), darts::vec3(path.throughput)));
     return ahead;
@@ -249,8 +248,6 @@ Flight StepsToEmitter::flyGuided(PathState& path, const Ahead& ahead) {
     if (hasDensities()) {
         const float event = random(), choice = random();
         sample = guide.distance().sample(*distances_, ahead.reach(), event, choice);
-        if (guided_->firstFlight && path.interactions == 0)
-            *guided_->firstFlight = {distances_->surface(), sample.surface};
     } else {
         sample = sampleDistance(guide, heading_, ahead.reach(), path.throughput, random);
     }

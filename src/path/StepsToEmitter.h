@@ -47,12 +47,6 @@ class LightCaches;
 /// Surfaces that light may be followed to: all lobes smooth, none transmits.
 bool endsGlossySubpath(LobeMask lobes);
 
-/// The flight from the camera: the probability of its end at a surface, and whether it has ended there.
-struct FirstFlight {
-    float probability = 0.0f;
-    bool atSurface = false;
-};
-
 /// What guided paths share.
 struct GuidedContext {
     const Scene& scene;
@@ -67,8 +61,6 @@ struct GuidedContext {
     const ProgressToken& watch;
     transport::StrategyBalance balance{};  ///< of guided paths beside plain ones
     const TargetChoice* targets = nullptr; ///< paths choose among their emitter's points; null: they do not
-    float surfaceOdds = 1.0f;              ///< TimeBudget::surfaceOdds of flights from the camera
-    FirstFlight* firstFlight = nullptr;    ///< told of in media, if not null
 };
 
 class StepsToEmitter : public transport::GuidedSteps {

@@ -83,8 +83,6 @@ class GuidedSteps {
     [[nodiscard]] const darts::TimeBudget& budget() const { return budget_; }
     /// Time budget of everything that the walk may find.
     [[nodiscard]] const darts::TimeBudget& reachable() const { return reachable_; }
-    /// Of the flight ahead (TimeBudget::surfaceOdds).
-    void setSurfaceOdds(float odds) { reachable_.surfaceOdds = odds; }
 
     // Roulette. Models of what is still to come do not compare: where another one holds, in another medium or by
     // another way out, the expected contribution is measured anew.

@@ -28,16 +28,6 @@ double SharePilot::weighed(const Contribution& contribution, Strategy strategy, 
     return value * double(balance.weight(strategy, contribution.logRatio.weighed));
 }
 
-double SharePilot::squaresOfLast() const {
-    if (paths_.empty()) return 0.0;
-    std::unordered_map<int, double> frames;
-    for (size_t k = paths_.back().first; k < found_.size(); ++k)
-        frames[found_[k].frame] += weighed(found_[k], paths_.back().strategy, Halves);
-    double squares = 0.0;
-    for (const auto& [frame, sum] : frames) squares += sum * sum;
-    return squares;
-}
-
 double SharePilot::pairsOfLast() const {
     if (paths_.empty()) return 0.0;
     std::unordered_map<int, double> frames;

@@ -41,8 +41,6 @@ class SharePilot {
     /// What has been found so far: how many contributions, and one of them.
     [[nodiscard]] size_t contributions() const { return found_.size(); }
     [[nodiscard]] float value(size_t contribution) const { return found_[contribution].value; }
-    /// Of what the last path has found in each frame, weighed as if half of all paths were plain: the sum of squares.
-    [[nodiscard]] double squaresOfLast() const;
     /// Of what the last path has found by its own estimate: the square of the sum in each frame, less those of single
     /// contributions.
     [[nodiscard]] double pairsOfLast() const;

@@ -1,6 +1,7 @@
 // Distances against quadrature, resampled, whatever their target and proposals, or by a density that is known.
 
 #include "darts/DistanceSampler.h"
+#include "darts/GreensFunction.h"
 #include "darts/Stratification.h"
 
 #include "support/ChiSquare.h"
@@ -78,11 +79,9 @@ TimeBudget residualOf(const DistanceCase& c) {
 }
 
 /// E[transmittance / pdf F(d)] = the integral of e^{-sigmaT d} F(d) over what is in time, and the surface's share.
-void expectUnbiased(const DistanceCase& c, const Settings& settings, bool scalar, uint64_t seed, double sigmas = 5.0,
-                    float surfaceOdds = 1.0f) {
+void expectUnbiased(const DistanceCase& c, const Settings& settings, bool scalar, uint64_t seed, double sigmas = 5.0) {
     const DistanceSampler sampler(settings, c.medium, scalar);
-    TimeBudget budget = residualOf(c);
-    budget.surfaceOdds = surfaceOdds;
+    const TimeBudget budget = residualOf(c);
     const double last = budget.latest(float(c.h)).firstLeg(), bound = std::min(last, c.surface);
     const auto shape = [&](double d) { return 1.0 + d / bound; };
     const Vec3 sigmaT = c.medium.sigmaT();
@@ -135,15 +134,29 @@ TEST(DistanceSampler, MeansMatchQuadratureForEveryTargetProposalAndCount) {
                 }
 }
 
-TEST(DistanceSampler, OddsOfSurfacesChangeHowOftenTheyAreReachedAndNoMean) {
-    uint64_t seed = 1500;
-    for (const DistanceCase& c : DistanceCases)
-        for (const float odds : {0.25f, 4.0f}) expectUnbiased(c, best(Mode::Path, 0.0f), false, ++seed, 5.0, odds);
-    const DistanceSampler sampler(best(Mode::Path, 0.0f), Medium{{0, 0, 0}, {1, 1, 1}, 0.0f});
-    TimeBudget budget = TimeBudget::of({0, 0, 1}, {3.0, 3.1});
-    budget.surfaceOdds = 4.0f;
-    const float natural = std::exp(-0.8f), reached = 4 * natural / (4 * natural + 1 - natural);
-    EXPECT_NEAR(sampler.density(budget, {{}, 1.0f}, 0.8f, {1, 1, 1}).surface(), reached, 1e-6f);
+/// All but a tenth choose by the light that a surface and the medium before it may bring in time.
+TEST(DistanceSampler, SurfacesAreReachedByTheirImportance) {
+    constexpr double C = 1.0, Gate = 0.1, Surface = 0.8;
+    for (const double sigma : {0.3, 2.0})
+        for (const double S : {1.5, 3.0})
+            for (const double h : {0.1, 1.0, 1.9}) {
+                const auto s = float(sigma);
+                const DistanceSampler sampler(best(Mode::Path, 0.0f), Medium{{0, 0, 0}, {s, s, s}, 0.0f});
+                const TimeBudget budget = TimeBudget::of({0, 0, float(C)}, {S - Gate, S});
+                const Ellipse<double> e{C, S - C, h};
+                if (e.firstLeg() < Surface) continue;
+                const CausalGreensFunction<double> phi{0.0, sigma};
+                const auto importance = [&](double d) {
+                    const double rho = e.distanceToTarget(d), left = S - d;
+                    return std::exp(-sigma * d + phi.log(1.0 - rho * rho / (left * left), left)) *
+                           std::min(left - rho, Gate);
+                };
+                const double before = sigma * tungsten::test::integrate<61>(importance, 0.0, Surface, 10, 1e-9);
+                const double expected =
+                    0.1 * std::exp(-sigma * Surface) + 0.9 * importance(Surface) / (importance(Surface) + before);
+                const float reached = sampler.density(budget, {{}, float(h)}, float(Surface), {1, 1, 1}).surface();
+                EXPECT_NEAR(double(reached), expected, 0.05 * expected) << sigma << " " << S << " " << h;
+            }
 }
 
 TEST(DistanceSampler, ThePublishedSamplerAndItsSwitchesAreUnbiased) {

@@ -158,7 +158,7 @@ TEST(Energy, GuidedPathsFillAClosedWhiteBox) {
                        "transform": {"position": [0, 0, 0.9], "look_at": [0, 0, -0.5]}},
             "integrator": {"type": "path_tracer", "max_bounces": 100000, "transient_time_center": 15,
                            "transient_time_width": 2, "darts": "best"}})",
-        {{}, 50, 40});
+        {{}, 90, 40});
     // Of the source seen one mean free path ahead; the next modes are below 1 % by then.
     const double k = M_PI / 2.0, diffusivity = 1.0 / (3.0 * sigmaS), seen = camera - 1.0 / sigmaS;
     const double expected =

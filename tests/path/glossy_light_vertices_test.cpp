@@ -113,7 +113,7 @@ TEST_P(WithReflectedLight, MeansAreAsWithout) {
     with.push_back(R"(integrator.darts={"plain_share": 0})");
     without.push_back(R"(integrator.darts={"plain_share": 0, "surface_connections": false})");
     const std::string scene = corner(room.light, room.thick);
-    const Estimate a = estimate(scene, with, 200), b = estimate(scene, without, 400);
+    const Estimate a = estimate(scene, with, 240), b = estimate(scene, without, 440);
     const double error = std::hypot(a.error, b.error);
     EXPECT_NEAR(a.mean, b.mean, 4.5 * error);
     EXPECT_LT(error, 0.016 * b.mean) << "the test would not see a wrong weight";

@@ -1,4 +1,4 @@
-// How often guided camera paths go on to surfaces in view: as what these bring asks for, and without a change of means.
+// Guided flights choose between a surface and the fog before it, without a change of means.
 
 #include "support/PathsAndPhotons.h"
 
@@ -28,22 +28,7 @@ std::unique_ptr<test::Rendered> beforeWall(const std::string& albedo, const std:
                              {{}, 64, samplesPerPass});
 }
 
-TEST(SurfaceOdds, GrowWithWhatSurfacesBring) {
-    struct Measured {
-        double odds, visits;
-    };
-    const auto measured = [](const std::string& albedo) -> Measured {
-        const auto rendered = beforeWall(albedo, R"({"preset": "best", "plain_share": 0})");
-        const auto count = [&](const char* counter) { return double(rendered->statistics.counter(counter)); };
-        return {count("odds of surfaces in view, in thousandths"), count("surface events") / count("camera paths")};
-    };
-    const Measured bright = measured("0.9"), dark = measured("0.01");
-    EXPECT_GT(bright.odds, 1.5 * dark.odds);
-    EXPECT_GT(dark.odds, 0.0);
-    EXPECT_GT(bright.visits, 1.5 * dark.visits) << "without plain paths beside them guided ones have the same odds";
-}
-
-TEST(SurfaceOdds, LeaveMeansAsTheyAre) {
+TEST(FlightsToSurfaces, LeaveMeansAsTheyAre) {
     for (const char* albedo : {"0.01", "0.9"}) {
         const auto plain = beforeWall(albedo, R"("off")", 2048);
         EXPECT_LT(plain->pixelError(), 0.03 * plain->mean());
