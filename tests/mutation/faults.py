@@ -132,8 +132,8 @@ FAULTS = [
     # src/darts
     ("src/darts/DistanceSampler.cpp", "draw.probability = 1.0f - event.probability;", "draw.probability = event.probability;",
      [("darts_tests", "DistanceSampler.MeansMatchQuadratureForEveryTargetProposalAndCount")]),  # guided flights that do not end at a surface ahead carry a wrong weight
-    ("src/darts/DistanceSampler.h", "return end / (end + sigmaS * sum_);", "return end / (end + sum_);",
-     [("darts_tests", "DistanceSampler.SurfacesAreReachedByTheirImportance")]),  # surfaces are reached as if media scattered once a unit of length
+    ("src/darts/DistanceSampler.h", "return end / (end + sigmaS * sum_);", "return end / (end + 2.0f * sigmaS * sum_);",
+     [("darts_tests", "DistanceSampler.SurfacesAreReachedByTheirImportance")]),  # surfaces are reached as if media scattered twice as often
     ("src/darts/DistanceSampler.cpp", "return {surface, true, event.reaching * (1.0f / event.probability)};", "return {surface, true, event.reaching};",
      [("darts_tests", "DistancesOut.MeansMatchQuadrature")]),  # surfaces seen through a guided medium are too dark
     ("src/darts/CandidateKernel.h", "Batch(useful / density[r]));", "Batch(useful * density[r]));",
