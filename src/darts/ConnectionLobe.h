@@ -77,7 +77,7 @@ class UniformLengthLobe {
 /// Directions of camera paths for all excess lengths from `low` to `low` + `width`: half by their lobe, half by that of
 /// the middle one. The first alone keeps the variance of connections finite where lengths begin at 0; but it sends
 /// paths that go on too close to the target's direction. (Variance of guided paths with a quarter, a half, three
-/// quarters and all of it: cornell-fog 0.95, 1, 1.04, 1.1, lamp in fog 0.96, 1, 1, 1.1, gate of 2.5 1.03, 1, 0.96,
+/// quarters and all of it: scattering 6.0 0.95, 1, 1.04, 1.1, lamp in fog 0.96, 1, 1, 1.1, gate of 2.5 1.03, 1, 0.96,
 /// 0.94. Bench: study gate-width, bodies.)
 template <typename Real>
 class GateLobe {

@@ -87,6 +87,7 @@ LogLinearDistance::LogLinearDistance(const CandidateDraw& draw, LogImportance im
     const float each = end * (endsInTime && !near ? 1.0f / 4 : 1.0f / 3);
     const float last = !endsInTime ? end : near ? end * (1.0f - std::sqrt(left / float(Nodes))) : 3.0f * each;
     constexpr float None = std::numeric_limits<float>::max();
+    static_assert(Nodes == 8);
     std::array<float, Nodes> at{0.0f, each, 2.0f * each, last, None, None, None, None};
     const auto add = [&at](float d) { // into ascending ones, of which the first stays
         for (size_t i = Nodes - 1; i > 0; --i) at[i] = std::max(at[i - 1], std::min(at[i], d));
@@ -101,7 +102,7 @@ LogLinearDistance::LogLinearDistance(const CandidateDraw& draw, LogImportance im
         add(end *
             (depth < 0.3f ? even - 0.125f : Deep[j] / std::sqrt(depth * depth + (Deep[j] / even) * (Deep[j] / even))));
     }
-    for (size_t i = 0; i < Nodes; ++i) nodes_[i] = at[i];
+    std::copy(at.begin(), at.end(), nodes_.begin());
     importance(draw, nodes_.data(), log.data());
     intervals_ = endsInTime ? Nodes : Nodes - 1;
     const Register here = lanes::get<Register>(nodes_.data());

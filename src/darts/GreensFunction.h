@@ -32,8 +32,9 @@ struct CausalGreensFunction {
         const Real less = (1 - u) * (r + q + 1) / ((q + 1) * (r + 1)); // 1 - u^{3/4}, exact towards u = 1
         constexpr Real Normalisation = Real(-2.148617937451772);       // -3/2 log(4 pi / 3)
         // One exponent, -(s/l)(1 - u^{3/4}): two would overflow and underflow against each other.
-        return Normalisation + std::log(sigmaS / (s * s)) +
-               Real(0.5) * std::log((meanFreePaths * r * q + Real(2.026)) / r) - meanFreePaths * less - sigmaA * s;
+        return Normalisation - 3 * std::log(s) +
+               std::log(meanFreePaths * std::sqrt((meanFreePaths * r * q + Real(2.026)) / r)) - meanFreePaths * less -
+               sigmaA * s;
     }
 };
 

@@ -50,8 +50,7 @@ auto SampleAllocation::smoothed(const Blocks& told, double pairs) const -> Block
             // Squares about the block, one ring after the other.
             for (int reach = 0; reach < 2 || (sum.pairs < pairs && reach < std::max(grid_.x, grid_.y)); ++reach)
                 for (int j = -reach; j <= reach; ++j)
-                    for (int i = -reach; i <= reach; i += std::abs(j) < reach && reach > 0 ? 2 * reach : 1)
-                        add(x + i, y + j);
+                    for (int i = -reach; i <= reach; i += std::abs(j) < reach ? 2 * reach : 1) add(x + i, y + j);
             const double of = std::max(sum.pairs, 1.0);
             smooth[size_t(y) * size_t(grid_.x) + size_t(x)] = {sum.variance / of, sum.cost / of, sum.pairs};
         }

@@ -134,6 +134,11 @@ TEST(DistanceSampler, MeansMatchQuadratureForEveryTargetProposalAndCount) {
                 }
 }
 
+TEST(DistanceSampler, BestIsUnbiased) {
+    uint64_t seed = 1500;
+    for (const DistanceCase& c : DistanceCases) expectUnbiased(c, best(Mode::Path, 0.0f), false, ++seed);
+}
+
 /// All but a tenth choose by the light that a surface and the medium before it may bring in time.
 TEST(DistanceSampler, SurfacesAreReachedByTheirImportance) {
     constexpr double C = 1.0, Gate = 0.1, Surface = 0.8;
@@ -155,7 +160,7 @@ TEST(DistanceSampler, SurfacesAreReachedByTheirImportance) {
                 const double expected =
                     0.1 * std::exp(-sigma * Surface) + 0.9 * importance(Surface) / (importance(Surface) + before);
                 const float reached = sampler.density(budget, {{}, float(h)}, float(Surface), {1, 1, 1}).surface();
-                EXPECT_NEAR(double(reached), expected, 0.05 * expected) << sigma << " " << S << " " << h;
+                EXPECT_NEAR(double(reached), expected, 0.02 * expected) << sigma << " " << S << " " << h;
             }
 }
 

@@ -18,17 +18,17 @@ void add(const GuidedPath& path, const Medium& medium, const darts::ControlVerte
     const Rgb light = path.target().intensity(-way->direction);
     if (isBlack(light)) return;
     const float phase = medium.phase.eval(state.ray.direction, way->direction);
-    const float chance = path.steps.shadowRayProbability(vertex, way->direction);
+    const float traced = path.steps.shadowRayProbability(vertex, way->direction);
     state.random.at(state.interactions + 1, Draw::ControlVertex);
-    if (chance < 1.0f && !(path.next() < chance)) return;
+    if (traced < 1.0f && !(path.next() < traced)) return;
     const float clear = path.target().vertex.margin().before(way->direction, way->distance);
     const Visibility visibility = path.connector().visibility({position, way->direction, 0.0f, clear}, way->distance,
                                                               state.region, path.counters.shadowRays);
     if (isBlack(visibility.transmittance) || !visibility.oneSpeed || !path.counts(1 + visibility.crossings, 1)) return;
-    const auto ending = ControlVertices::endingAt(path, medium, vertex, chance);
+    const auto ending = ControlVertices::endingAt(path, medium, vertex, traced);
     const auto share = ConnectionsFromMedia::share(path, position, phase, ending);
     const float weight =
-        phase / sqr(vertex.toTarget) * vertex.inversePdf * ending.shareOfControl() / chance * share.beside;
+        phase / sqr(vertex.toTarget) * vertex.inversePdf * ending.shareOfControl() / traced * share.beside;
     const Rgb radiance = state.throughput * medium.sigmaS() * medium.transmittance(vertex.distance) * light *
                          visibility.transmittance * weight;
     // A delta gate is one of time, the connection's weight dt/dS one of length.
@@ -83,10 +83,10 @@ StepsToEmitter::InMedium ControlVertices::ending(const GuidedPath& path, const M
 }
 
 StepsToEmitter::InMedium ControlVertices::endingAt(const GuidedPath& path, const Medium& medium,
-                                                   const darts::ControlVertex& vertex, float chance) {
+                                                   const darts::ControlVertex& vertex, float shadowRayProbability) {
     // A delta gate leaves no density per length.
     if (!path.steps.hasDensities() || path.context.sensor.gate.delta) return ending(path, medium, vertex.distance);
-    return path.steps.inMedium(vertex.distance, chance / vertex.inversePdf);
+    return path.steps.inMedium(vertex.distance, shadowRayProbability / vertex.inversePdf);
 }
 
 } // namespace tungsten::path

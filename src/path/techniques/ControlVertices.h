@@ -13,9 +13,10 @@ struct ControlVertices {
     /// How densely paths are found that have their last vertex in the medium at `distance` along the ray: by control
     /// vertices, and by ordinary ones.
     [[nodiscard]] static StepsToEmitter::InMedium ending(const GuidedPath& path, const Medium& medium, float distance);
-    /// The same at a control vertex, which is traced by `chance`.
+    /// The same at a control vertex that is traced with this probability.
     [[nodiscard]] static StepsToEmitter::InMedium endingAt(const GuidedPath& path, const Medium& medium,
-                                                           const darts::ControlVertex& vertex, float chance);
+                                                           const darts::ControlVertex& vertex,
+                                                           float shadowRayProbability);
 };
 
 } // namespace tungsten::path
