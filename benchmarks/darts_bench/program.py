@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from darts_bench import plots, run
-from darts_bench.run import MOST_SAMPLES, PROJECT, SHARED, appearing, build_of, checked, set_options
+from darts_bench.run import MOST_SAMPLES, PROJECT, SHARED, appearing, build_of, checked, pass_size, set_options
 from darts_bench.tables import comma_separated
 
 MAP = "integrator.type=progressive_transient_photon_map"
@@ -108,10 +108,10 @@ class Bench:
         """A figure of the study, or that of its quick form."""
         return quick if self.quick else full
 
-    def command(self, scene, settings, options, threads=1):
+    def command(self, scene, settings, options, threads=1, size="renderer.spp_step=1"):
         """Of any run of the scene at its resolution, but for its outputs and its file."""
         return [str(self.tungsten), "-t", str(threads), "--resolution", f"{scene.resolution[0]}x{scene.resolution[1]}", *options,
-                *set_options(["renderer.spp_step=1", "renderer.enable_resume_render=false", *scene.settings, *settings])]
+                *set_options([size, "renderer.enable_resume_render=false", *scene.settings, *settings])]
 
     def kept(self, scene, what, make):
         """The folder of what a command left, made by `make` in a folder if it is not there; `what` is the command and its limits."""
@@ -123,9 +123,11 @@ class Bench:
         return folder
 
     def render(self, scene, settings=(), seed=1, cpu=None, passes=None, options=(), threads=1, again=1):
-        """Until `passes`, or the process has used `cpu` seconds; passes of one sample a pixel unless `settings` say else.
-        `again`: the same another time, where times matter."""
-        command = self.command(scene, settings, ["-s", str(seed), "--quiet", "--spp", str(passes or MOST_SAMPLES), "--timeout", "10h", *options], threads)
+        """Until `passes` of one sample a pixel, or the process has used `cpu` seconds in passes of that size (pass_size), unless
+        `settings` say else. `again`: the same another time, where times matter."""
+        size = {} if passes else {"size": pass_size([*scene.settings, *settings])}
+        limits = ["-s", str(seed), "--quiet", "--spp", str(passes or MOST_SAMPLES), "--timeout", "10h"]
+        command = self.command(scene, settings, [*limits, *options], threads, **size)
 
         def make(folder):
             outputs = ["-d", folder, "-o", "image.png", "-e", "image.exr", "--stats", "stats.json", "--trace", "trace", scene.file]

@@ -27,6 +27,7 @@ COMMAND = PROJECT / "benchmarks/bench.py"
 SHARED = PROJECT.parent / "shared/scenes"  # by others, not part of the project
 LONGEST = 40000  # seconds of any render that has no other limit
 MOST_SAMPLES = 10**9  # where a limit of time ends a render, never the number of samples
+PATHS_STEP = 8  # samples of a pass of paths that a limit of time ends: from 4 on they are shared out over the image
 
 
 class BenchError(Exception):
@@ -118,6 +119,13 @@ def as_typed(command):
         return f"{name}={path}" if is_setting else path
 
     return shlex.join(map(from_project, command))
+
+
+def pass_size(settings):
+    """The setting of a render that a limit of time ends: each pass of a photon map has photons of its own, one of paths
+    some samples to share out."""
+    types = [value for value in settings if value.startswith("integrator.type=")]
+    return f"renderer.spp_step={PATHS_STEP if types[-1:] == ['integrator.type=path_tracer'] else 1}"
 
 
 def set_options(settings):

@@ -12,7 +12,7 @@ import numpy as np
 
 from darts_bench import measures
 from darts_bench.images import read_exr, write_pfm
-from darts_bench.run import MOST_SAMPLES, BenchError, appearing, build_of, call, content_key, machine, set_options, workers
+from darts_bench.run import MOST_SAMPLES, BenchError, appearing, build_of, call, content_key, machine, pass_size, set_options, workers
 from darts_bench.study_file import Method, Scene, Study
 
 BAD_INPUT = 1  # exit code
@@ -48,7 +48,8 @@ class Run:
                        f"integrator.transient_time_width={round(end - start, 12)!r}"]
         for name in reversed(self.method.lineage):
             values += self.scene.overrides.get(name, [])
-        return [*values, *self.method.overrides, "renderer.enable_resume_render=false", "renderer.spp_step=1"]
+        values += self.method.overrides
+        return [*values, "renderer.enable_resume_render=false", pass_size(values)]
 
     def arguments(self):
         """The renderer's, without those that say where results go."""

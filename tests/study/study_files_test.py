@@ -12,7 +12,7 @@ PROJECT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(PROJECT / "benchmarks"))
 
 from darts_bench.results import Summary  # noqa: E402
-from darts_bench.run import BenchError  # noqa: E402
+from darts_bench.run import BenchError, pass_size  # noqa: E402
 from darts_bench.study_file import Method, PublishedFigures, Scene, Study, load_study, require_references  # noqa: E402
 from darts_bench.study_runs import plan  # noqa: E402
 from darts_bench.tables import baseline_of, left_out, overview  # noqa: E402
@@ -78,6 +78,11 @@ class StudyFiles(unittest.TestCase):
         swept = study.methods[2]
         self.assertEqual((swept.overrides, swept.published, swept.swept), (("x=1", "x=2", "s=3", "t=4"), "p", ("size", 3, "derived")))
         self.assertEqual([len(study.methods_of(scene)) for scene in study.scenes], [3, 1])
+
+    def test_passes_of_paths_have_samples_to_share_out(self):
+        paths, photons = "integrator.type=path_tracer", "integrator.type=progressive_transient_photon_map"
+        sizes = [pass_size(settings) for settings in ([paths], [photons], [], [photons, paths, "integrator.darts=off"], [paths, photons])]
+        self.assertEqual(sizes, [f"renderer.spp_step={size}" for size in (8, 1, 1, 8, 1)])
 
     def test_scenes_leave_methods_out(self):
         """By their name or a base's: no runs, and the reason is reported; a name that is not compared is a mistake."""

@@ -53,7 +53,7 @@ class Submit(unittest.TestCase):
             "scenes": [{"name": "fog", "path": str(SCENE), "resolution": [16, 16], "gate": [5.45, 5.75],
                         "reference": str(self.folder / "reference.exr")}],
             "methods": [{"name": "paths", "set": ["integrator.type=path_tracer"]},
-                        {"name": "guided; no", "set": ["integrator.type=path_tracer", "integrator.darts=best"]}]}))
+                        {"name": "guided; no", "set": ["integrator.type=path_tracer", "integrator.darts=published"]}]}))
         self.stub = self.folder / "sbatch"
         self.stub.write_text(STUB)
         self.stub.chmod(0o755)

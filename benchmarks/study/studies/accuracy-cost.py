@@ -70,7 +70,7 @@ def compared(bench, scene):
     """(laws, measurements, reasons why methods have no price) by method of one scene."""
     plan = bench.plan_cost(scene, bench.short(2, 0.3))["methods"]
     laws = {method["name"]: Law(method) for method in plan if "prices" in method}
-    cells = {method["name"]: (scene, method["settings"].split()) for method in plan if "prices" in method}
+    cells = {method["name"]: (scene, [*method["settings"].split(), "renderer.spp_step=1"]) for method in plan if "prices" in method}
     found = bench.interleaved(cells, SEEDS, cpu=bench.short(1.5, 0.5), options=["--bias"])
     measured = {name: Measured(renders) for name, renders in found.items() if min(r.passes[-1] for r in renders) > 3}
     return laws, measured, {method["name"]: method["refused because"] for method in plan if "prices" not in method}
