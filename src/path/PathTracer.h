@@ -33,13 +33,14 @@ class PathTracer : public Integrator {
     [[nodiscard]] bool guides() const { return plan_.guidance.on && balance_.guided > 0.0f; }
     /// Points that the paths of the pass aim at.
     [[nodiscard]] const TargetChoice& targets() const { return guides() ? *targets_ : *sources_; }
-    /// Measures how much pixels vary, by pairs of paths as they are now.
-    [[nodiscard]] SampleAllocation measureSamples(const ProgressToken& watch, Statistics& statistics) const;
+    /// Measures how much pixels vary, by pairs of paths as they are now, at this part of the cost of a pilot of shares.
+    [[nodiscard]] SampleAllocation measureSamples(const ProgressToken& watch, Statistics& statistics,
+                                                  double part) const;
     /// Shares samples out, and takes improved plain paths where they are worth more than what was chosen.
     void allocateSamples(const ProgressToken& watch, Statistics& statistics);
     /// Plain paths alone may have lights in view in expectation and weight windows. What a pilot finds better is left
-    /// in place, with the samples it measured; none if the chosen balance stays, or if nothing could be better.
-    std::optional<SampleAllocation> improvePlainPaths(const ProgressToken& watch, Statistics& statistics);
+    /// in place; otherwise the chosen balance stays.
+    void improvePlainPaths(const ProgressToken& watch, Statistics& statistics);
     /// Some ray of a pilot meets a light through a medium in time.
     [[nodiscard]] bool seesLights(const ProgressToken& watch) const;
     [[nodiscard]] WeightWindows learnWindows(const ProgressToken& watch, Statistics& statistics) const;

@@ -29,7 +29,11 @@ Vec2i SampleAllocation::pixelOf(size_t block, float u, float v) const {
 
 void SampleAllocation::tell(size_t block, double variance, double cost) {
     if (!std::isfinite(variance)) return;
-    Block& told = halves_[halves_[0][block].pairs > halves_[1][block].pairs ? 1 : 0][block];
+    // By turns, and a block's neighbours the other way round: both halves see all of the image from the first pair on.
+    const auto width = size_t(grid_.x);
+    const bool odd = (block % width + block / width) % 2 == 1;
+    const double first = halves_[0][block].pairs, second = halves_[1][block].pairs;
+    Block& told = halves_[first == second ? odd : first > second][block];
     told.variance += variance;
     squares_ += variance * variance;
     told.cost += cost;

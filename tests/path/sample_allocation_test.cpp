@@ -62,6 +62,15 @@ TEST(SampleAllocation, IsNeymans) {
     EXPECT_EQ(of(1.0, 1.0), 1.0);
 }
 
+/// A single pair of each block: neighbours judge each other.
+TEST(SampleAllocation, OneRoundIsEnough) {
+    SampleAllocation allocation({32, 32});
+    for (size_t block = 0; block < allocation.blocks(); ++block)
+        allocation.tell(block, allocation.pixelOf(block, 0.5f, 0.5f).x < 16 ? 1.0 : 64.0, 1.0);
+    allocation.choose();
+    EXPECT_NEAR(std::log2(densityOf(allocation, 31, 16) / densityOf(allocation, 0, 16)), 3.0, 0.6);
+}
+
 TEST(SampleAllocation, CostsWhatAnEvenOneDoes) {
     const auto variance = [](int x, int y) { return std::pow(4.0, x) * (1.0 + y); };
     const auto cost = [](int x, int y) { return 1.0 + x * y; };
