@@ -67,13 +67,14 @@ class Pilot {
         integrator_.prepare(facts, watch, unreported);
         pass_.watch = watch;
         pass_.share = std::min(1.0, tuning::PathsOfPass / double(settings.photonCount));
+        renderPass(pass_.share * 1e-6, camera_);
+        pass_.share *= affordablePart();
         // Variances are as the inverse of the number of light paths, but where kernels narrow the more there are: then
         // a ray meets as many as their cube root.
         const bool follow = std::visit([&](const auto& p) { return p.radiiFollowRecords(settings); }, primitive_);
         ofWholePass_ = follow ? std::cbrt(pass_.share) : pass_.share;
     }
     void render(uint32_t passes) {
-        if (film_.passes() == 0) renderPass(pass_.share * 1e-6, camera_);
         while (film_.passes() < passes) {
             renderPass(pass_.share, counted_);
             film_.endPass(1.0);
@@ -100,6 +101,15 @@ class Pilot {
   private:
     [[nodiscard]] double cameraPaths() const {
         return double(film_.width()) * double(film_.height()) * double(integrator_.cameraPaths());
+    }
+    /// The part of a pass's light paths with which the least number of passes stays within the budget.
+    [[nodiscard]] double affordablePart() {
+        constexpr double Trial = 1.0 / 16.0, Budget = double(transport::tuning::MostPilotCost) / tuning::LeastPasses;
+        Statistics trial;
+        renderPass(pass_.share * Trial, trial);
+        const auto costOfPass = [&](const Statistics& pass) { return costOf(pass, primitive_, cameraPaths(), 1.0); };
+        const double lightPaths = (costOfPass(trial) - costOfPass(camera_)) / Trial;
+        return lightPaths > Budget ? std::max(Budget / lightPaths, Trial) : 1.0;
     }
 
     VolumePrimitive primitive_;

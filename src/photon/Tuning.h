@@ -125,7 +125,7 @@ inline constexpr PassCosts PassNanoseconds{.path = 180.0,
                                            .density = 11500.0,
                                            .point = {20.0, 410.0, 0.0, 43.0, 1.0},
                                            .beam = {390.0, 780.0, 0.0, 50.0, 50.0},
-                                           .slice = {1700.0, 0.0, 0.55, 0.0, 320.0}};
+                                           .slice = {6000.0, 0.0, 0.0, 120.0, 320.0}};
 /// How many times as often as the pilot's paths those of a render may connect to surfaces: as their part of the
 /// variance and of the cost asks for. Neighbours share light the more the fewer connections there are, so that the
 /// model of one over their number is a rough one. Variance x CPU of cbox at 128 x 128, points and beams, at most 1 and

@@ -37,6 +37,9 @@ Scene fogAtGate(const SplatCase& c) {
     }
     scene.cameraRegion.speed = c.speed;
     scene.emitters.push_back({"lamp", PointEmitter{{}, Vec3f(1.0f, 2.5f, 3.5f), Rgb(3.0f, 2.0f, 1.0f)}});
+    static const Shape disk = Disk{Vec3f(0.0f), 1.0f, Frame(Vec3f(0.0f, 0.0f, 1.0f)), 0.2f};
+    scene.emitters.push_back(
+        {"panel", AreaEmitter{{}, &disk, 0, Texture(2.0f), std::make_shared<const AreaSampler>(disk)}});
     scene.transport.minBounces = 2;
     scene.transport.maxBounces = 7;
     scene.transport.cameraUnwarped = c.unwarped;
@@ -71,7 +74,7 @@ std::vector<SliceRecord> randomRecords(const Scene& scene, int count) {
         r.lengths = {sampler.next1D(), sampler.next1D()};
         r.bounce = uint16_t(i / 5 % 3);
         r.medium = int16_t(i / 5 % 3);
-        r.emitter = i % 25 == 0 ? 0 : -1;
+        r.emitter = int16_t(i % 25 == 0 ? i / 25 % 2 : -1);
         r.shared = r.emitter < 0 && i % 2 == 0 && (r.shape == FlightShape::Ball || r.shape == FlightShape::Volume);
         if (r.shape == FlightShape::Ball) {
             const bool single = r.emitter < 0 && !r.shared;

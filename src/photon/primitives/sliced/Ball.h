@@ -139,7 +139,17 @@ inline Batch leavingBall(const LaneRecord& record, const Lanes3& last) {
         return xsimd::select(last.dot(normals[2]) > 0.0f, xsimd::max(last.dot(normals[0]), Batch(0.0f)) * InvPi,
                              Batch(0.0f));
     }
-    return record.isotropic ? Batch(1.0f) : henyeyGreenstein(record.g, Lanes3(record.flights->directions[1]), last);
+    switch (record.leaving) {
+    case LaneRecord::Leaving::Evenly:
+        return Batch(1.0f);
+    case LaneRecord::Leaving::Cosine: {
+        const Batch cosine = last.dot(record.flights->directions[0]);
+        return xsimd::select(cosine >= record.leastCosine, xsimd::max(cosine, Batch(0.0f)), Batch(0.0f));
+    }
+    case LaneRecord::Leaving::Phase:
+        break;
+    }
+    return henyeyGreenstein(record.g, Lanes3(record.flights->directions[1]), last);
 }
 
 /// What a ball counts of a path that volumes make too, (16): `scattered` at its centre into the last flight.

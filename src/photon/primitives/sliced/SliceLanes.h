@@ -125,7 +125,10 @@ struct LaneRecord {
     bool drawsPoints; ///< on chords: something can be in the way, or balls share the path
     float phasePdf;   ///< a volume: of its third direction
     float pdfs;       ///< a ball: of the two flights that led to it
-    bool isotropic;   ///< a ball on a light that shines alike everywhere
+    /// How light leaves a ball's centre: by the phase function, alike everywhere, or by the cosine from the light's
+    /// normal, where that is at least `leastCosine`.
+    enum class Leaving { Phase, Evenly, Cosine } leaving;
+    float leastCosine;
 
     [[nodiscard]] float warp() const { return warped ? 1.0f : 0.0f; }
     /// Rays from where they begin, with the lengths that `times` go with.

@@ -35,8 +35,7 @@ std::optional<ImageSlice> SliceFootprints::prepare(const SliceRecord& flights, s
     if (!area) return std::nullopt;
     const bool ball = flights.shape == FlightShape::Ball, occluders = !scene_.primitives.empty();
     const auto& w = flights.directions;
-    const auto light =
-        flights.emitter >= 0 ? isotropicIntensity(scene_.emitters[size_t(flights.emitter)]) : std::optional<Rgb>();
+    const LightAtBall light = lightAt(flights);
     LaneRecord record{&flights,
                       times,
                       medium.sigmaT(),
@@ -49,15 +48,27 @@ std::optional<ImageSlice> SliceFootprints::prepare(const SliceRecord& flights, s
                       occluders || flights.shared,
                       ball ? 0.0f : medium.phase.pdf(w[1], w[2]),
                       1.0f,
-                      light.has_value()};
+                      light.leaving,
+                      light.leastCosine};
     if (ball) record.pdfs = pdfFlight(medium, flights.lengths[0]) * pdfFlight(medium, flights.lengths[1]);
     ImageSlice s{record, kernelOf(flights), *area, flights.power, false};
-    s.inLanes = !weighed_ && medium.phase.isHenyeyGreenstein() && (flights.emitter < 0 || light);
+    s.inLanes = !weighed_ && medium.phase.isHenyeyGreenstein() && light.known;
     const double perLength = atLengths(flights) ? speed * gate_.frameWidth : 1.0;
     for (int k = 0; k < 3; ++k)
         s.power[k] *= float(scale_ * perLength * collisions(double(medium.sigmaS()[k]), flights.flights()));
-    if (light) s.power = s.power * *light;
+    s.power = s.power * light.intensity;
     return s;
+}
+
+auto SliceFootprints::lightAt(const SliceRecord& ball) const -> LightAtBall {
+    if (ball.emitter < 0) return {};
+    const Emitter& emitter = scene_.emitters[size_t(ball.emitter)];
+    if (const AreaEmitter* area = emitter.surface()) {
+        const SurfaceSample point = ball.surfacePoint();
+        return {area->emittedIntensity(point, point.normal), LaneRecord::Leaving::Cosine, area->cosCone()};
+    }
+    if (const auto even = isotropicIntensity(emitter)) return {*even, LaneRecord::Leaving::Evenly};
+    return {.known = false};
 }
 
 bool SliceFootprints::farAway(const SliceRecord& flights, double speed) const {

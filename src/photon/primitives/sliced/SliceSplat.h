@@ -41,6 +41,15 @@ class SliceFootprints {
     [[nodiscard]] std::optional<ImageSlice> prepare(const SliceRecord& flights, std::span<const float> shares) const;
 
   private:
+    /// Of a ball on a light: its intensity, but for the cosine, and how that goes with direction, if registers of rays
+    /// can tell.
+    struct LightAtBall {
+        Rgb intensity{1.0f};
+        LaneRecord::Leaving leaving = LaneRecord::Leaving::Phase;
+        float leastCosine = 0.0f;
+        bool known = true;
+    };
+    [[nodiscard]] LightAtBall lightAt(const SliceRecord& ball) const;
     /// The camera is so far that its distance would take digits from what counts.
     [[nodiscard]] bool farAway(const SliceRecord& flights, double speed) const;
     /// The gate is met at one length of each frame, or at the delta gate; otherwise inside frames.
