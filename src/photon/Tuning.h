@@ -98,7 +98,7 @@ struct Costs {
 /// mis_volumes_balls).
 inline constexpr Costs Nanoseconds{.plain = {115.0, 120.0, 100.0, 0.0},
                                    .guided = {50.0, 200.0, 200.0, 500.0},
-                                   .connection = 200.0,
+                                   .connection = 700.0,
                                    .point = 400.0,
                                    .beam = 1300.0,
                                    .slice = 3000.0,

@@ -1,5 +1,6 @@
 // Connections' light shared among neighbouring visible points.
 
+#include "photon/light/RecordImportance.h"
 #include "photon/surface/PathReuse.h"
 #include "tungsten/scene/SceneLoader.h"
 
@@ -48,6 +49,19 @@ TEST_F(PathReuse, BelowOnePixelEachPointKeepsItsOwn) {
     const Image image = share({straightDown(30), straightDown(30), straightDown(200)}, 0.9f);
     for (size_t i = 0; i < 480; ++i)
         EXPECT_NEAR(image.pixels[i].y, i == 30 ? 2.0f * Reflected : i == 200 ? Reflected : 0.0f, 1e-5f) << i;
+}
+
+/// The pilot knows what a connection brings: the root of its squares' sum over the image, BSDF and disc included.
+TEST_F(PathReuse, IsWhatThePilotCounts) {
+    PhotonSettings settings;
+    settings.progressive = false;
+    settings.gatherRadius = 100.0f;
+    const ConnectionRecord light = straightDown(10 * 24 + 5);
+    double squares = 0.0;
+    for (const Rgb& pixel : share({light}, tuning::SharedPixels).pixels) squares += double(sqr(meanComponent(pixel)));
+    const RecordImportance importance(*loaded_.scene, settings, loaded_.scene->transport.gate);
+    const double counted = double(importance.ofConnection(light, record_.points[light.point]).value);
+    EXPECT_NEAR(counted * 3.0 / 2.0, std::sqrt(squares), 0.1 * std::sqrt(squares)) << "scale 3, gate of width 2";
 }
 
 /// A constant stays what it is, also at edges, where fewer neighbours share.

@@ -16,6 +16,9 @@ RecordImportance::RecordImportance(const Scene& scene, const PhotonSettings& set
     : scene_(scene), sensor_(sensor), frame_(scene.camera.toWorld.rotation()),
       radius_(settings.volumeRadius < 1e20f ? settings.volumeRadius : 0.0f),
       surfaceRadius_(settings.gatherRadius < 1e20f ? settings.gatherRadius : 0.0f),
+      reuse_(ReuseKernel::of(
+          settings.gatherRadius,
+          surfaceRadiusFactor(settings.progressive ? uint32_t(tuning::MiddlePass) : 0, settings.alpha))),
       placed_(!scene.camera.hasParallelRays()) {
     if (placed_) camera_ = scene.camera.position();
     const float plane = placed_ ? scene.camera.fieldOfView().value_or(FieldOfView()).planeDistance : 1.0f;
@@ -110,10 +113,17 @@ Contribution RecordImportance::onSurface(const Photon& photon) const {
 }
 
 Contribution RecordImportance::ofConnection(const ConnectionRecord& light, const VisiblePoint& point) const {
-    // Neighbours share what arrives.
-    constexpr float Sharing = Pi * tuning::SharedPixels * tuning::SharedPixels;
-    return {meanComponent(light.light * point.throughput) / std::sqrt(Sharing),
-            light.frame * 65536 + int(point.pixel % 65536u)};
+    // Neighbours share what arrives (ReuseKernel): those of a disc in the image, which may be cut by one in the scene.
+    const Vec3f way = point.hit.position - camera_;
+    const float pixel = std::sqrt(pixel_) * (placed_ ? way.length() : 1.0f);
+    const float radius = std::min(reuse_.pixels, reuse_.distance / std::max(pixel, 1e-30f));
+    const float covered = std::max(Pi * sqr(radius), 1.0f);
+    // Cells are squares of about that size.
+    const auto side = uint32_t(std::lround(std::sqrt(covered)));
+    const auto width = uint32_t(scene_.camera.resolution.x), column = point.pixel % width, row = point.pixel / width;
+    const uint32_t cell = uint32_t(light.frame) * 0x9E3779B1u + row / side * 0x85EBCA6Bu + column / side;
+    const Rgb radiance = point.vertex(scene_).scattering(light.from) * light.light * point.throughput;
+    return {meanComponent(radiance) / std::sqrt(covered), int(cell >> 1)};
 }
 
 } // namespace tungsten::photon

@@ -2,6 +2,7 @@
 // What records of light paths bring to the image, about: what a pilot judges plain and guided paths by.
 
 #include "photon/PhotonSettings.h"
+#include "photon/surface/PathReuse.h"
 #include "photon/surface/SurfaceConnections.h"
 #include "photon/view/CameraRecord.h"
 #include "transport/TimeSensor.h"
@@ -50,6 +51,7 @@ class RecordImportance {
     Frame frame_;
     float radius_;        ///< of the volume kernel; 0: unknown
     float surfaceRadius_; ///< of gathers on surfaces
+    ReuseKernel reuse_;   ///< of what connections bring, in a middle pass
     float pixel_;         ///< solid angle of one
     bool placed_;         ///< the camera has one position
 };
