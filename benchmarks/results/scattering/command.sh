@@ -1,1 +1,1 @@
-build/bin/tungsten -t 1 --resolution 48x48 -s 1001 --quiet --spp 1000000000 --timeout 10h --set renderer.spp_step=1 --set renderer.enable_resume_render=false --set media.fog.sigma_s=0.03 --set integrator.type=path_tracer --set integrator.darts=best data/scenes/cornell-fog/scene.json
+../bin60/tungsten -t 1 --resolution 48x48 -s 1001 --quiet --spp 1000000000 --timeout 10h --set renderer.spp_step=8 --set renderer.enable_resume_render=false --set media.fog.sigma_s=0.03 --set integrator.type=path_tracer --set integrator.darts=best data/scenes/cornell-fog/scene.json
