@@ -19,19 +19,19 @@ PHOTONS = [("path", ["photons"]), *WALK, ("connection", ["surface connections"])
 WALKS_OF_PASSES = [("path", ["photons"]), ("ray", ["rays"]), ("mediumEvent", ["medium events"]), ("surfaceEvent", ["surface events"]),
                    ("controlVertex", ["control vertices"]), ("connection", ["surface connections"]),
                    ("density", ["flights with densities of guided paths"])]
-#: Of a primitive: counters of what is stored and gathered, and whether each record is splatted to all of the image.
-PRIMITIVES = {"points": ("stored volume photons", "gathered photons", False), "beams": ("photon beams", "gathered beams", False),
-              "mis_volumes_balls": ("sliced primitives", "gathered slices", True)}
+#: Of a primitive: counters of what is stored and gathered.
+PRIMITIVES = {"points": ("stored volume photons", "gathered photons"), "beams": ("photon beams", "gathered beams"),
+              "mis_volumes_balls": ("sliced primitives", "gathered slices")}
 
 
 def rendered(options, scene, method, darts):
-    """Counters, CPU seconds of passes, and pixels of a render, if one pass ended in time."""
+    """Counters and CPU seconds of the passes of a render, if one pass ended in time."""
     kind = ["type=transient_path_tracer"] if method == "paths" else ["type=progressive_transient_photon_map", f"volume_photon_type={method}"]
     try:
         found = film(options.tungsten, scene, [f"integrator.{value}" for value in (*kind, f"darts={json.dumps(darts)}")], seconds=options.seconds)
     except BenchError:
         return None
-    return found.statistics["counters"], found.cpu, found.statistics["width"] * found.statistics["height"]
+    return found.statistics["counters"], found.cpu
 
 
 def fitted(rows, seconds, weights=1.0):
@@ -52,17 +52,16 @@ def fitted(rows, seconds, weights=1.0):
 def fit_passes(options):
     """All primitives at once, as their walks cost alike: each has columns of its own for records."""
     names = [name for name, _ in WALKS_OF_PASSES]
-    names += [f"{method}.{what}" for method in PRIMITIVES for what in ("stored", "ended", "perPixel", "splatted", "gathered")]
+    names += [f"{method}.{what}" for method in PRIMITIVES for what in ("stored", "ended", "splatted", "gathered")]
     rows, seconds = [], []
     for scene in options.scenes:
-        for place, (method, (stored, gathered, everywhere)) in enumerate(PRIMITIVES.items()):
+        for place, (method, (stored, gathered)) in enumerate(PRIMITIVES.items()):
             if not (found := rendered(options, scene, method, "best")):
                 continue
-            counters, cpu, pixels = found
+            counters, cpu = found
             records, splatted = counters.get(stored, 0), counters.get("splatted records", 0)
-            own = np.zeros(5 * len(PRIMITIVES))
-            own[5 * place: 5 * place + 5] = [records, counters.get("kernels ended at surfaces", 0),
-                                             records * pixels if everywhere and splatted else 0, 0 if everywhere else splatted,
+            own = np.zeros(4 * len(PRIMITIVES))
+            own[4 * place: 4 * place + 4] = [records, counters.get("kernels ended at surfaces", 0), splatted,
                                              counters.get(gathered, 0) - splatted]
             rows.append([sum(counters.get(name, 0) for name in added) for _, added in WALKS_OF_PASSES] + list(own))
             seconds.append(cpu)
@@ -81,7 +80,7 @@ def fit_walks(options):
         rows, seconds = [], []
         for scene in options.scenes:
             if found := rendered(options, scene, options.method, {"preset": "best", "plain_share": share}):
-                counters, cpu, _ = found
+                counters, cpu = found
                 rows.append([sum(counters.get(name, 0) for name in added) for _, added in table])
                 seconds.append(cpu)
         costs = fitted(rows, seconds)

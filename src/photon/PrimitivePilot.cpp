@@ -35,8 +35,8 @@ double pixelsOf(const Scene& scene) {
     return double(scene.camera.resolution.x) * double(scene.camera.resolution.y);
 }
 
-/// Nanoseconds of what passes with so many camera paths have counted, had they `ratio` times as many.
-double costOf(const Statistics& counted, const VolumePrimitive& primitive, double cameraPaths, double ratio) {
+/// Nanoseconds of what passes have counted, had they `ratio` times as many camera paths.
+double costOf(const Statistics& counted, const VolumePrimitive& primitive, double ratio) {
     const auto& costs = tuning::PassNanoseconds;
     const auto count = [&](const std::string& counter) { return double(counted.counter(counter)); };
     const double walks =
@@ -50,8 +50,7 @@ double costOf(const Statistics& counted, const VolumePrimitive& primitive, doubl
                                                                              : costs.beam;
         const double stored = count(p.Stored), splatted = count(counter::SplattedRecords);
         return record.stored * stored + record.ended * count(counter::EndedKernels) +
-               ratio * ((splatted > 0.0 ? record.perPixel * cameraPaths * stored : 0.0) + record.splatted * splatted +
-                        record.gathered * (count(p.Gathered) - splatted));
+               ratio * (record.splatted * splatted + record.gathered * (count(p.Gathered) - splatted));
     };
     return walks + std::visit(ofRecords, primitive);
 }
@@ -82,7 +81,7 @@ class Pilot {
     }
     [[nodiscard]] const VolumePrimitive& primitive() const { return primitive_; }
     [[nodiscard]] uint32_t passes() const { return film_.passes(); }
-    [[nodiscard]] double cost() const { return costOf(counted_, primitive_, cameraPaths(), 1.0); }
+    [[nodiscard]] double cost() const { return costOf(counted_, primitive_, 1.0); }
     [[nodiscard]] double mean() const { return meanValue(film_); }
     /// Variance times cost of a whole pass in an image of so many times the pixels. `brightest`: the largest mean of
     /// the primitives; what this one has not seen of it in n passes comes at most once in n, with a variance of n times
@@ -92,22 +91,18 @@ class Pilot {
         if (!std::isfinite(deviation)) return Infinity;
         const double missed = brightest - mean(), variance = passes * std::max(deviation * deviation, missed * missed);
         // A pass without light paths costs what camera paths do.
-        const double camera = costOf(camera_, primitive_, cameraPaths(), 1.0);
-        const double lightPaths =
-            std::max(costOf(counted_, primitive_, cameraPaths(), pixelRatio) / passes - camera, 0.0);
+        const double camera = costOf(camera_, primitive_, 1.0);
+        const double lightPaths = std::max(costOf(counted_, primitive_, pixelRatio) / passes - camera, 0.0);
         return variance * ofWholePass_ * (lightPaths / pass_.share + pixelRatio * camera);
     }
 
   private:
-    [[nodiscard]] double cameraPaths() const {
-        return double(film_.width()) * double(film_.height()) * double(integrator_.cameraPaths());
-    }
     /// The part of a pass's light paths with which the least number of passes stays within the budget.
     [[nodiscard]] double affordablePart() {
         constexpr double Trial = 1.0 / 16.0, Budget = double(transport::tuning::MostPilotCost) / tuning::LeastPasses;
         Statistics trial;
         renderPass(pass_.share * Trial, trial);
-        const auto costOfPass = [&](const Statistics& pass) { return costOf(pass, primitive_, cameraPaths(), 1.0); };
+        const auto costOfPass = [&](const Statistics& pass) { return costOf(pass, primitive_, 1.0); };
         const double lightPaths = (costOfPass(trial) - costOfPass(camera_)) / Trial;
         return lightPaths > Budget ? std::max(Budget / lightPaths, Trial) : 1.0;
     }

@@ -512,11 +512,11 @@ FAULTS = [
     ("src/transport/BounceLimits.h", "++flights <= medium.maxBounces", "++flights < medium.maxBounces",
      [("photon_tests", "BeamMap.OrdersAndLimitsAsForPoints")]),  # max_bounces of a medium ends light paths one early
     ("src/photon/light/RecordImportance.cpp", "point.vertex(scene_).scattering(light.from) * light.light", "light.light",
-     [("photon_tests", "PathReuse.IsWhatThePilotCounts")]),
+     [("photon_tests", "PathReuse.IsWhatThePilotCounts")]),  # pilots take light for what surfaces reflect of it
     ("src/path/SampleAllocation.cpp", "first == second ? odd : first > second", "first == second ? odd && false : first > second",
-     [("path_tests", "SampleAllocation.OneRoundIsEnough")]),
+     [("path_tests", "SampleAllocation.OneRoundIsEnough")]),  # one round of pairs leaves a half empty
     ("src/photon/primitives/sliced/Ball.h", "cosine >= record.leastCosine", "cosine >= 0.0f",
-     [("photon_sliced_tests", "*SliceSplat*")]),
+     [("photon_sliced_tests", "*SliceSplat*")]),  # lights with a cone shine outside it
     ("src/photon/light/PhotonPass.cpp", "RandomStream::Photon, pass.index, path);", "RandomStream::Photon, 0u, path);",
      [("photon_sliced_tests", "Kinds/SliceOrders.MatchVerifiedValues/planesA2UnwarpedBox")]),  # all passes trace the same photons: more passes bring nothing
     ("src/photon/light/StepsToCamera.cpp", "path.throughput = path.throughput / survival;", "path.throughput = path.throughput * survival;",

@@ -65,8 +65,7 @@ def run(bench: Bench):
                 "*Gain*: plain over best; *99 %*: without the hundredth of the pixels of largest error, which tells what single bright "
                 "samples make of it. *FLIP*: of the pictures, plain and best, the reference's own noise in it. Means over the reference's, with the standard error over seeds: kernels are a few per cent off, and where "
                 "plain sampling has not seen the light its mean is low and its MSE, about 1, too. Bars: least and largest ratio of one seed's. "
-                "Gains are least in gates that hold most of the light (tissue, gate of 4), "
-                "and for beams where light hardly diffuses (two rooms).",
+                "Gains are least in gates that hold most of the light (tissue, gate of 4).",
                 "![gains](bodies.svg)",
                 "All figures: " + bench.keep("bodies", ["scene", "kind", "plain", "best", "gain", "gain, 99 %", "FLIP, plain", "FLIP, best", "plain: mean",
                                                         "plain: its error", "best: mean", "best: its error", "passes, plain", "passes, best"], rows) + ".",
