@@ -187,11 +187,12 @@ class Guide {
     }
     /// Into how many a walk splits whose expected contribution has become larger than at first: the other side of
     /// survival(). At most `most`, and 16 at once.
-    [[nodiscard]] int copies(float logContribution, float logFirst, float most) const {
+    [[nodiscard]] int copies(EscapeModel model, float logContribution, float logFirst, float most) const {
         const float gain = logContribution - logFirst;
-        if (!(settings_.roulette > 0) || !(gain > std::log(SplitAbove))) return 1;
-        return int(std::clamp(std::exp(std::min(gain, 10.0f)) / SplitAbove + 1.0f, 1.0f,
-                              std::max(std::min(most, 16.0f), 1.0f)));
+        const float above = model == EscapeModel::Bounded ? settings_.splitOut : SplitAbove;
+        if (!(settings_.roulette > 0) || !(gain > std::log(above))) return 1;
+        return int(
+            std::clamp(std::exp(std::min(gain, 10.0f)) / above + 1.0f, 1.0f, std::max(std::min(most, 16.0f), 1.0f)));
     }
 
   private:

@@ -32,11 +32,15 @@ float GuidedSteps::survival(const darts::Guide& guide, int medium, float through
 
 int GuidedSteps::copiesBy(const darts::Guide& guide) {
     int copies = 1;
-    if (reachable_.model == darts::EscapeModel::Bounded)
-        copies = splits_.copies(guide.splits(reachable_));
-    else if (first_)
-        copies = guide.copies(logContribution_, first_->logContribution, tuning::MostCopies / expectedOffspring_);
+    if (reachable_.model == darts::EscapeModel::Bounded) copies = splits_.copies(guide.splits(reachable_));
     expectedOffspring_ *= float(copies);
+    if (!first_) return copies;
+    // Of those, what is still too heavy splits once more.
+    const float each = logContribution_ - std::log(float(copies));
+    const int heavy =
+        guide.copies(reachable_.model, each, first_->logContribution, tuning::MostCopies / expectedOffspring_);
+    expectedOffspring_ *= float(heavy);
+    return copies * heavy;
     return copies;
 }
 

@@ -89,8 +89,8 @@ class GuidedSteps {
     void startRoulette(const darts::Guide& guide, int medium, float throughput);
     /// Probability of going on; 1 where the roulette starts.
     [[nodiscard]] float survival(const darts::Guide& guide, int medium, float throughput);
-    /// Into how many copies the walk goes on, itself included: out of bodies by darts::SplittingSchedule, elsewhere
-    /// where its expected contribution has grown too much.
+    /// Into how many copies the walk goes on, itself included: where its expected contribution has grown too much, and
+    /// out of bodies by darts::SplittingSchedule before that.
     [[nodiscard]] int copiesBy(const darts::Guide& guide);
 
     // Connection.

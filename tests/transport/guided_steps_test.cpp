@@ -73,6 +73,30 @@ TEST(GuidedSteps, WhatHasBecomeTooUsefulSplits) {
     EXPECT_GT(step.copiesBy(guide), 8);
 }
 
+/// Where half of 16 transport mean free paths is not left yet, by their expected contribution alone; by both where it
+/// is.
+TEST(GuidedSteps, OutOfBodiesHeavyWalksSplitBesideTheSchedule) {
+    const darts::Guide photons(darts::best(darts::Mode::Photon, 0.0f), Fog);
+    const darts::Guide paths(darts::best(darts::Mode::Path, 0.0f), Fog);
+    const auto copiesOf = [&](const darts::Guide& guide, double longest, float throughput) {
+        GuidedSteps step;
+        step.setTimeBudgetAndModel(test::outOf(0.5, 3.0, longest, 1.0));
+        EXPECT_FLOAT_EQ(step.survival(guide, 0, 1.0f), 1.0f);
+        EXPECT_EQ(step.copiesBy(guide), 1);
+        if (longest < 10.0) step.setTimeBudgetAndModel(test::outOf(0.5, 3.0, 0.5 * (longest + 3.5), 1.0));
+        (void)step.survival(guide, 0, throughput);
+        return step.copiesBy(guide);
+    };
+    EXPECT_EQ(copiesOf(photons, 43.5, 3.9f), 1);
+    EXPECT_EQ(copiesOf(photons, 43.5, 40.0f), 11); // 40 / 4 + 1
+    EXPECT_EQ(copiesOf(photons, 9.5, 1.0f), 2);
+    const int both = copiesOf(photons, 9.5, 40.0f);
+    EXPECT_GT(both, 2);
+    EXPECT_EQ(both % 2, 0);
+    EXPECT_EQ(copiesOf(paths, 43.5, 40.0f), 1);
+    EXPECT_EQ(copiesOf(paths, 9.5, 40.0f), 2);
+}
+
 TEST(GuidedSteps, OutOfBodiesCameraPathsEndSooner) {
     const darts::Guide guide(darts::best(darts::Mode::Path, 0.0f), Fog);
     for (const bool out : {false, true}) {
