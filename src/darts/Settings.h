@@ -121,7 +121,7 @@ inline Settings best(Mode mode, float g) {
     } else {
         s.roulette = 0.03f;
         s.rouletteOut = 0.3f;
-        s.splitOut = std::numeric_limits<float>::infinity(); // the schedule is enough: 1.3 to 1.6 times the cost at 4
+        s.splitOut = std::numeric_limits<float>::infinity(); // the schedule is enough: 1.1 to 1.5 times the cost at 4
         s.greens = peaked ? Greens::Diffusion : Greens::Causal;
     }
     return s;

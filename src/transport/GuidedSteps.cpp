@@ -41,7 +41,6 @@ int GuidedSteps::copiesBy(const darts::Guide& guide) {
         guide.copies(reachable_.model, each, first_->logContribution, tuning::MostCopies / expectedOffspring_);
     expectedOffspring_ *= float(heavy);
     return copies * heavy;
-    return copies;
 }
 
 void GuidedSteps::crossIndexMatched(float distance) {
