@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 """What is shown wrongly, or at too high a cost, and what each marked case waits for: "One balance" of guided and plain ways of camera
-paths, "One balance for photons" of light paths. Every case states the right value. A marked case that is still wrong is
+paths, "One balance for photons" of light paths, or slices that follow forward peaks. Every case states the right value. A marked case that is still wrong is
 printed as an expected failure and passes; one that has become right fails until its mark is taken off; one without a mark must hold.
 Seeds and samples are fixed, and work is counted in rays, so that no outcome depends on the machine's speed.
 
@@ -27,6 +27,7 @@ from awaits_balance_scenes import LIGHT, PATHS, gate, points, with_integrator
 
 TUNGSTEN = os.environ.get("TUNGSTEN", str(Path(__file__).resolve().parents[2] / "build/bin/tungsten"))
 PHOTON_BALANCE = "One balance for photons"
+FOLLOWED_PEAKS = "slices whose flights follow the phase function"
 BEST, PLAIN = {"darts": "best"}, {"darts": "off"}
 SIGMAS = 4.5  # standard errors: of the 40 comparisons here one in 4000 runs is further off by chance, were the seeds not fixed
 TESTED, REFERENCE = 1, 1001  # seeds
@@ -115,8 +116,8 @@ def forward_peak_by_paths(method):
     return must_be(render(with_integrator(scenes.forward_peak(), PATHS, method), TESTED, 8192).average(), forward_peak_by_plain_paths())
 
 
-def forward_peak_by_points(method):
-    """The kernel's radius is a tenth of the ball's: some per cent at its edge."""
+def forward_peak_by_photons(method):
+    """Points, if the method names no others. The kernel's radius is a tenth of the ball's: some per cent at its edge."""
     samples = 8192 if method.get("type") == "path_tracer" else 128
     film = render(with_integrator(scenes.forward_peak(), points(2000, 0.06), method), TESTED + 1, samples, passes=128)
     return must_be(film.average(), forward_peak_by_plain_paths(), most_error=0.1, allowed=0.05)
@@ -240,7 +241,8 @@ CASES = [
     Case("lit by a mirror, cost of paths", None, mirror_cost, BEST, PLAIN),
     Case("fog under glass, paths", None, under_glass, BEST, PLAIN),
     Case("room of thin fog, cost of paths", None, room_cost, BEST, PLAIN),
-    Case("forward peak, points", PHOTON_BALANCE, forward_peak_by_points, BEST, {**PATHS, **PLAIN}),
+    Case("forward peak, points", PHOTON_BALANCE, forward_peak_by_photons, BEST, {**PATHS, **PLAIN}),
+    Case("forward peak, slices", FOLLOWED_PEAKS, forward_peak_by_photons, {**BEST, "volume_photon_type": "mis_volumes_balls"}, {**PATHS, **PLAIN}),
     Case("coloured milk, light tracer", None, partial(coloured_milk, LIGHT, 16384, 0), COLOURS, GREY),
     Case("coloured milk, points", None, partial(coloured_milk, points(1000, 0.1, steady=True), 512, 0.1), COLOURS, GREY),
     Case("tissue fibre, light tracer", None, partial(tissue, LIGHT, 32768), TISSUE, (1, 0, 16)),

@@ -5,6 +5,8 @@
 #include "photon/primitives/Primitive.h"
 #include "photon/primitives/sliced/SliceSplat.h"
 
+#include "tungsten/reader/Field.h"
+
 namespace tungsten::photon {
 
 SliceClasses SliceClasses::of(SliceKind kind, bool steadyState, bool lowOrders, bool onlyShared) {
@@ -56,6 +58,14 @@ bool slicesNeedBeams(const Scene& scene, const SliceClasses& classes) {
                              std::any_of(scene.emitters.begin(), scene.emitters.end(), fromBeams));
 }
 
+namespace {
+
+/// |g| up to which slices show what paths do. A ball of 60 mean free paths before a lamp, light that has hardly turned,
+/// kernels of 5 % of the ball, 12 s: slices 0.97 of plain paths at 0.9, 0.89 at 0.95; points 0.99 and 0.96.
+constexpr float MostSlicedPeak = 0.9f;
+
+} // namespace
+
 float largestPeak(const Scene& scene) {
     float peak = 0.0f;
     for (const Medium& medium : scene.media)
@@ -72,6 +82,12 @@ void Slices::read(const ObjectReader& block, const Scene& scene, PhotonSettings&
                                                 "and volumes");
     classes = SliceClasses::of(kind, steadyState, settings.lowOrderScattering, settings.excludeNonMis);
     classes.shortFlights = settings.shortFlights;
+    if (const float peak = largestPeak(scene); peak > MostSlicedPeak)
+        block.warn("volume_photon_type",
+                   "'" + type + "' evaluates phase functions at vertices that are not drawn by them: with |g| of " +
+                       brief(peak) +
+                       " much of the light is in samples so rare that image and standard error "
+                       "may lack it; points and paths show it");
     if (!slicesNeedBeams(scene, classes)) return;
     classes.share = tuning::ShareBesideBeams;
     classes.sharedShare = tuning::SharedBesideBeams;
