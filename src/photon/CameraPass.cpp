@@ -229,6 +229,30 @@ class CameraPass {
         });
     }
 
+    /// Of what one path of a pixel brings, summed over pixels and frames: half the squares of what two differ by, in so
+    /// many pairs, about.
+    [[nodiscard]] double variance(size_t pairs) const {
+        const auto width = size_t(scene_.camera.resolution.x);
+        const size_t pixels = width * size_t(scene_.camera.resolution.y), stride = (pixels + pairs - 1) / pairs,
+                     rounds = (pairs + pixels - 1) / pixels;
+        CameraGatherCounters unreported;
+        Workspace first{FrameSums(size_t(gate().frames)), FrameSums(size_t(gate().frames)), {}}, second = first;
+        double sum = 0.0;
+        for (size_t round = 0; round < rounds; ++round)
+            for (size_t pixel = 0; pixel < pixels; pixel += stride) {
+                const Vec2i at(int(pixel % width), int(pixel / width));
+                std::fill(first.sums.begin(), first.sums.end(), Vec3d(0.0));
+                std::fill(second.sums.begin(), second.sums.end(), Vec3d(0.0));
+                addSample(at, uint32_t(2 * round), first, unreported);
+                addSample(at, uint32_t(2 * round + 1), second, unreported);
+                for (size_t frame = 0; frame < first.sums.size(); ++frame) {
+                    const Rgb difference(first.sums[frame] - second.sums[frame]);
+                    sum += 0.5 * double(sqr(meanComponent(difference)));
+                }
+            }
+        return sum * double(stride) / double(rounds);
+    }
+
   private:
     [[nodiscard]] const TimeGate& gate() const { return structures_.sensor.gate; }
 
@@ -289,6 +313,12 @@ class CameraPass {
 void renderCameraPass(const Scene& scene, const GatherStructures& structures, const CameraRecord* record,
                       const PassInfo& pass, Film& film, Statistics& statistics) {
     CameraPass(scene, structures, record, pass, film).run(statistics);
+}
+
+double varianceOfLightsInView(const Scene& scene, const GatherStructures& structures, const PassInfo& pass) {
+    constexpr size_t Pairs = 4096;
+    Film none(1, 1, 1);
+    return CameraPass(scene, structures, nullptr, pass, none).variance(Pairs);
 }
 
 } // namespace tungsten::photon

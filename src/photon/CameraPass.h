@@ -28,4 +28,8 @@ struct GatherStructures {
 void renderCameraPass(const Scene& scene, const GatherStructures& structures, const CameraRecord* record,
                       const PassInfo& pass, Film& film, Statistics& statistics);
 
+/// What camera paths leave whatever light paths do: the variance of an image of one a pixel that shows lights alone,
+/// times the squared width of the gate, summed over pixels and frames. `structures` have no photons.
+double varianceOfLightsInView(const Scene& scene, const GatherStructures& structures, const PassInfo& pass);
+
 } // namespace tungsten::photon

@@ -82,7 +82,10 @@ void PhotonIntegrator::chooseShare(const ProgressToken& watch, Statistics& stati
         connections = std::make_unique<SurfaceConnections>(
             *scene_, sensor, *seen, pass, ConnectionBlur::of(settings_.gatherRadius, 1.0f), forwardBoundaries_);
     }
-    photonPass_->chooseShare(watch, connections.get(), seen ? &*seen : nullptr, statistics);
+    const Store<Photon> none;
+    const GatherStructures lights{none, sensor, true, settings_.includeSurfaces, rules_, glossy_.get()};
+    photonPass_->chooseShare(watch, connections.get(), seen ? &*seen : nullptr,
+                             varianceOfLightsInView(*scene_, lights, pass) / double(plan_.cameraPaths), statistics);
 }
 
 double PhotonIntegrator::memoryBytes() const {

@@ -62,8 +62,8 @@ double SharePilot::effective(Strategy strategy) const {
 }
 
 /// Second moments at other shares, from contributions c at the pilot's own: E[sum c_k c'_k + 2 sum_(j<k) c_k c'_j],
-/// where c' are those at the shares in question, since pairs on one way are found as densely as the longer path. What
-/// guided paths find beside their way they find in pairs alone; pairs of plain paths alone are those that these find.
+/// where c' are those at the shares in question, since pairs on one way are found as densely as the longer path, by
+/// plain paths alone as well where they find alike. What guided paths find beside their way they find in pairs alone.
 /// Less the squares of means, by independent halves.
 auto SharePilot::momentsByPixel(const StrategyBalance& balance) const -> std::vector<Moments> {
     struct Before {
@@ -84,10 +84,11 @@ auto SharePilot::momentsByPixel(const StrategyBalance& balance) const -> std::ve
             const double share = balance.guided == 0.0f ? double(found_[k].logRatio.aloneOverBeside) : 1.0;
             const double here = weighed(found_[k], strategy, Halves), there = weighed(found_[k], strategy, balance);
             Before& frame = before[found_[k].frame];
-            const double inPairs = balance.guided > 0.0f                             ? here
-                                   : alone == nullptr && strategy == Strategy::Plain ? there / double(Halves.plain)
-                                                                                     : 0.0;
-            pixel.second += share * here * there + 2.0 * inPairs * frame.onWay + 2.0 * there * frame.aside;
+            const bool pairs = balance.guided > 0.0f || (!alone && !(plainInPairs_ && strategy == Strategy::Guided));
+            const double onWay = !pairs                                    ? 0.0
+                                 : balance.guided == 0.0f && plainInPairs_ ? there / double(Halves.plain)
+                                                                           : share * here;
+            pixel.second += share * here * there + 2.0 * onWay * frame.onWay + 2.0 * there * frame.aside;
             if (found_[k].found == Found::OnWay)
                 frame.onWay += there;
             else
@@ -145,10 +146,9 @@ bool SharePilot::isSure(const PathCosts& costs) const {
     return sum * sum > Errors * Errors * (squares - sum * sum / double(ofMost.size()));
 }
 
-double SharePilot::choose(const PathCosts& costs, const std::function<double(const StrategyBalance&)>& scoreOf) const {
+double SharePilot::choose(const std::function<double(double)>& score) const {
     constexpr double Half = 0.5;
     if (effective(Strategy::Alone) < tuning::LeastEffective) return Half;
-    const auto score = [&](double time) { return scoreOf(costs.ofTime(time)); };
     double best = Half, least = score(Half);
     for (const double time : Times) {
         if (time == Half) continue;

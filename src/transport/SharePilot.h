@@ -28,6 +28,10 @@ struct PathCosts {
 
 class SharePilot {
   public:
+    /// `plainInPairs`: what plain paths alone find together on one way is known from plain paths only, as guided ones
+    /// leave other records there.
+    explicit SharePilot(bool plainInPairs = false) : plainInPairs_(plainInPairs) {}
+
     /// Shares of the time that plain paths may get; 1: all paths are plain, and nothing is weighed.
     static constexpr std::array<double, 5> Times{1.0, 0.75, 0.5, 0.25, 0.1};
 
@@ -63,14 +67,16 @@ class SharePilot {
     /// The share of time with the least variance x cost; one half, unless enough has been found to tell. What plain
     /// paths have not found counts by what they would bring in the place of guided ones.
     [[nodiscard]] double choose(const PathCosts& costs) const {
-        return choose(costs, [&](const StrategyBalance& balance) { return variance(balance) * costs.mean(balance); });
+        return choose([&](double plainTime) {
+            const StrategyBalance balance = costs.ofTime(plainTime);
+            return variance(balance) * costs.mean(balance);
+        });
     }
     /// Plain paths alone are better or worse than with the least share of the time by two standard errors of variance x
     /// cost, pixel by pixel.
     [[nodiscard]] bool isSure(const PathCosts& costs) const;
-    /// Chooses by another score, of which the least is best.
-    [[nodiscard]] double choose(const PathCosts& costs,
-                                const std::function<double(const StrategyBalance&)>& scoreOf) const;
+    /// Chooses by another score of plain's share of the time; the least is best.
+    [[nodiscard]] double choose(const std::function<double(double)>& score) const;
 
   private:
     struct Path {
@@ -104,6 +110,7 @@ class SharePilot {
         int paths = 0;
     };
 
+    bool plainInPairs_;
     std::vector<Path> paths_;
     std::vector<Contribution> found_;
     std::vector<Pairs> alone_; ///< by pixel

@@ -352,6 +352,8 @@ FAULTS = [
      [("path_tests", "SharePilot.KnowsPlainPathsAsTheyAreAlone")]),  # plain paths alone vary less than they do
     ("src/path/PlainTrail.cpp", "guided.logRatio += std::log(steps.expectedCopies(guided, vertex));", ";",
      [("path_tests", "PlainTrail.*")]),  # plain paths' densities forget roulette and splits
+    ("src/transport/SharePilot.cpp", "!(plainInPairs_ && strategy == Strategy::Guided)", "strategy != Strategy::Guided",
+     [("path_tests", "SharePilot.KnowsItOfPathsThatFindMoreThanOnce")]),  # plain paths alone have in common what they have met by luck
     ("src/transport/SharePilot.cpp", "pixel.squaredMean += half[0] * half[1] * double(PathsOfPixel);", ";",
      [("path_tests", "SharePilot.*")]),  # the pilot takes second moments for variances
     ("src/darts/ControlVertex.h", "return Real(0.5) * (lengths.pdf(offset) + part", "return (lengths.pdf(offset) + part",
@@ -515,6 +517,12 @@ FAULTS = [
      [("photon_tests", "BeamMap.OrdersAndLimitsAsForPoints")]),  # max_bounces of a medium ends light paths one early
     ("src/photon/light/RecordImportance.cpp", "point.vertex(scene_).scattering(light.from) * light.light", "light.light",
      [("photon_tests", "PathReuse.IsWhatThePilotCounts")]),  # pilots take light for what surfaces reflect of it
+    ("src/photon/light/RecordImportance.cpp", "!inView(position, std::sqrt(solid / pixel_))", "pixel_ < 0.0f && !inView(position, 0.0f)",
+     [("photon_tests", "RecordImportance.IsNothingBesideTheView")]),  # pilots take what is beside the view for light in the image
+    ("src/photon/light/RecordImportance.cpp", "std::sqrt(pixel_ * solid)), int(cell & 0x7FFFFFFFu)", "std::sqrt(pixel_ * solid)), int(cell >> 1)",
+     [("photon_tests", "RecordImportance.CellsAreAsWideAsRecords")]),  # records of neighbouring cells are taken to meet
+    ("src/photon/light/PhotonPass.cpp", "return rest.variance(balance) + noise;", "return rest.variance(balance) + 0.0 * noise;",
+     [("photon_tests", "SharePilotOfPhotons.KnowsTheNoiseOfLampsInView")]),  # guided paths, where cheap ones would do
     ("src/path/SampleAllocation.cpp", "first == second ? odd : first > second", "first == second ? odd && false : first > second",
      [("path_tests", "SampleAllocation.OneRoundIsEnough")]),  # one round of pairs leaves a half empty
     ("src/photon/primitives/sliced/Ball.h", "cosine >= record.leastCosine", "cosine >= 0.0f",

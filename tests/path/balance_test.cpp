@@ -57,8 +57,9 @@ TEST(PathCosts, SharesOfTimeAreThoseOfPathsByTheirCosts) {
     EXPECT_NEAR(costs.mean(balance), double(balance.plain) * 1.5 + double(balance.guided) * 6.0, 1e-6);
 }
 
-/// A pilot of paths that find X with the densities plain and guided ones have there: by a known distribution.
-SharePilot pilotOf(double plainFinds, double guidedFinds, int groups) {
+/// A pilot of paths that find X with the densities plain and guided ones have there: by a known distribution. What they
+/// bring is the sum of so many contributions on one way.
+SharePilot pilotOf(double plainFinds, double guidedFinds, int groups, int parts = 1) {
     SharePilot pilot;
     const auto logRatio = float(std::log(guidedFinds / plainFinds));
     for (int i = 0; i < groups * SharePilot::PathsOfPixel; ++i) {
@@ -66,7 +67,8 @@ SharePilot pilotOf(double plainFinds, double guidedFinds, int groups) {
         const bool guided = i % 2 == 1;
         const double finds = guided ? guidedFinds : plainFinds;
         pilot.begin(guided ? Strategy::Guided : Strategy::Plain);
-        if (double(sampler.next1D()) < finds) pilot.tell(float(1.0 / finds), 0, logRatio, Found::OnWay);
+        if (double(sampler.next1D()) >= finds) continue;
+        for (int part = 0; part < parts; ++part) pilot.tell(float(1.0 / (finds * parts)), 0, logRatio, Found::OnWay);
     }
     return pilot;
 }
@@ -76,6 +78,16 @@ TEST(SharePilot, KnowsTheVarianceOfAnyShare) {
     const SharePilot pilot = pilotOf(0.02, 0.3, 40000);
     for (const StrategyBalance balance : {StrategyBalance{1.0f, 0.0f}, {0.5f, 0.5f}, {0.1f, 0.9f}}) {
         const double finds = double(balance.plain) * 0.02 + double(balance.guided) * 0.3;
+        EXPECT_NEAR(pilot.variance(balance), 1.0 / finds - 1.0, 0.1 * (1.0 / finds - 1.0));
+    }
+}
+
+/// What several contributions of one path have in common, too, where plain paths themselves have found none.
+TEST(SharePilot, KnowsItOfPathsThatFindMoreThanOnce) {
+    constexpr double Plain = 2e-5, Guided = 0.3;
+    const SharePilot pilot = pilotOf(Plain, Guided, 40000, 4);
+    for (const StrategyBalance balance : {StrategyBalance{1.0f, 0.0f}, {0.5f, 0.5f}, {0.1f, 0.9f}}) {
+        const double finds = double(balance.plain) * Plain + double(balance.guided) * Guided;
         EXPECT_NEAR(pilot.variance(balance), 1.0 / finds - 1.0, 0.1 * (1.0 / finds - 1.0));
     }
 }

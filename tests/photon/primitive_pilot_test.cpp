@@ -76,7 +76,7 @@ TEST(PrimitivePilot, ChoosesFromWhatTheSceneAllows) {
 
 /// One scattering on the way: a beam says more of it than a point. With many, and behind glass, points do.
 TEST(PrimitivePilot, ChoosesByVarianceAndCost) {
-    const MeasuredPrimitive thin = load("0.05").measured(), milk = load("20", {}, "dielectric").measured();
+    const MeasuredPrimitive thin = load("0.05").measured(), milk = load("40", {}, "dielectric").measured();
     EXPECT_TRUE(std::holds_alternative<Beams>(thin.primitive)) << thin.reason;
     EXPECT_TRUE(std::holds_alternative<Points>(milk.primitive)) << milk.reason;
 }

@@ -159,7 +159,7 @@ EFFECTS = [
     ("surface photons", room(PHOTONS), "primitives[0].bsdf", room({**PHOTONS, "include_surfaces": False})),
     ("surface photons", room(PHOTONS), "primitives[0].bsdf",
      foggy({**PHOTONS, "transient_time_width": 0.2, "transient_time_center": 2.5}, primitives__0__transform={"position": [0, -9, 0]})),
-    ("guided light paths", foggy(best()), "integrator.darts", foggy(PHOTONS)),
+    ("guided light paths", foggy(best(plain_share=0.5)), "integrator.darts", foggy(PHOTONS)),
     ("EDA table", foggy(best(direction="eda")), "integrator.darts", foggy(best(direction="connection"))),
     ("surface connections", foggy(best()), "integrator.darts", foggy(best(surface_connections=False))),
     ("path reuse between pixels", foggy(best()), "integrator.darts", foggy(PHOTONS)),

@@ -334,10 +334,14 @@ double recordCost(const VolumePrimitive& primitive) {
 
 /// A pilot of both strategies: of what connections to surfaces bring, and of the rest.
 struct PhotonPilot {
-    explicit PhotonPilot(const VolumePrimitive& primitive) : traced(primitive) {}
+    PhotonPilot(const VolumePrimitive& primitive, double noisePerPath)
+        : brightnessKnown(!std::holds_alternative<Slices>(primitive)), rest(!brightnessKnown),
+          connected(!brightnessKnown), traced(primitive), noise(brightnessKnown ? noisePerPath : 0.0) {}
 
+    bool brightnessKnown; ///< that of slices is known up to a factor
     SharePilot rest, connected;
     TracedPaths traced;
+    double noise; ///< variance that is not of light paths, as if it were of each of a pass's
     double plainRecords = 0.0, guidedRecords = 0.0;
     PathCosts costs, connections; ///< the latter of connections alone
 
@@ -347,32 +351,37 @@ struct PhotonPilot {
     }
     /// Connections that would be best, over those that the pilot made: their variance is as 1 / n, their cost as n.
     [[nodiscard]] double effort(const transport::StrategyBalance& balance) const {
-        // How bright slices are is known up to a factor.
-        if (std::holds_alternative<DepositList<SliceRecord>>(traced.deposits.volume)) return 1.0;
+        if (!brightnessKnown) return 1.0;
         const double variance = connected.variance(balance), cost = connections.mean(balance);
         if (!(variance > 0.0) || !(cost > 0.0)) return 1.0;
-        return std::clamp(std::sqrt(variance * costs.mean(balance) / std::max(rest.variance(balance) * cost, 1e-300)),
+        return std::clamp(std::sqrt(variance * costs.mean(balance) / std::max(ofRest(balance) * cost, 1e-300)),
                           tuning::LeastEffort, tuning::MostEffort);
+    }
+    /// Variance of what is not connected.
+    [[nodiscard]] double ofRest(const transport::StrategyBalance& balance) const {
+        return rest.variance(balance) + noise;
     }
     /// Variance x cost.
     [[nodiscard]] double score(const transport::StrategyBalance& balance) const {
         const double times = effort(balance);
-        return (rest.variance(balance) + connected.variance(balance) / times) *
+        return (ofRest(balance) + connected.variance(balance) / times) *
                (costs.mean(balance) + times * connections.mean(balance));
     }
-    /// Whether either strategy has found so many effective contributions, of either kind that there is.
+    /// Whether either strategy has found so many effective contributions, of either kind of which any have been found.
     [[nodiscard]] bool hasFound(double enough) const {
+        const auto any = [](const SharePilot& pilot) { return pilot.effective(transport::Strategy::Alone) > 0.0; };
         const auto found = [&](const SharePilot& pilot) {
-            return pilot.effective(transport::Strategy::Alone) == 0.0 ||
-                   (pilot.effective(transport::Strategy::Plain) >= enough &&
-                    pilot.effective(transport::Strategy::Guided) >= enough);
+            return !any(pilot) || (pilot.effective(transport::Strategy::Plain) >= enough &&
+                                   pilot.effective(transport::Strategy::Guided) >= enough);
         };
-        return found(rest) && found(connected);
+        return (any(rest) || any(connected)) && found(rest) && found(connected);
     }
-    /// Plain's share of the time, judged by what is not connected, if there is anything.
-    [[nodiscard]] double choose() const {
+    /// Plain's share of the time, judged by what is not connected, if there is anything. Where importance is a guess,
+    /// the guarantee counts beside it, half as much: at a share of the time the score is at most plain paths' over it.
+    [[nodiscard]] double choose(bool guess) const {
         const SharePilot& judge = rest.effective(transport::Strategy::Alone) > 0.0 ? rest : connected;
-        return judge.choose(costs, [&](const transport::StrategyBalance& balance) { return score(balance); });
+        return judge.choose(
+            [&](double plainTime) { return score(costs.ofTime(plainTime)) / (guess ? std::sqrt(plainTime) : 1.0); });
     }
 };
 
@@ -400,7 +409,7 @@ void addRecords(PhotonPilot& pilot, const RecordImportance& importance, const De
 } // namespace
 
 void PhotonPass::chooseShare(const ProgressToken& watch, SurfaceConnections* connections, const CameraRecord* seen,
-                             Statistics& statistics) {
+                             double noise, Statistics& statistics) {
     const std::optional<float> asked = settings_.policy.plainShare;
     if (asked && *asked == 1.0f) {
         balance_ = {1.0f, 0.0f};
@@ -421,7 +430,7 @@ void PhotonPass::chooseShare(const ProgressToken& watch, SurfaceConnections* con
     context.storeVolume = storeVolume_;
     context.storeSurface = storeSurface_;
     const RecordImportance importance(scene_, settings_, transport::TimeSensor::of(scene_, culling_.gate()));
-    PhotonPilot pilot(settings_.primitive);
+    PhotonPilot pilot(settings_.primitive, noise * double(settings_.photonCount));
     TracedPaths& traced = pilot.traced;
     PhotonTrail trail;
     const auto count = [&] {
@@ -460,7 +469,8 @@ void PhotonPass::chooseShare(const ProgressToken& watch, SurfaceConnections* con
         constexpr double Enough = 10.0 * transport::tuning::LeastEffective;
         if ((path & (path - 1)) == 0 && pilot.hasFound(Enough)) break;
     }
-    balance_ = pilot.costs.ofTime(asked ? double(*asked) : pilot.choose());
+    balance_ =
+        pilot.costs.ofTime(asked ? double(*asked) : pilot.choose(!importance.seesDirectly() && pilot.brightnessKnown));
     connectionEffort_ = pilot.effort(balance_);
     statistics.add(counter::PilotPaths, path);
     const auto thousandths = [](double part) { return uint64_t(std::lround(1000.0 * part)); };

@@ -40,9 +40,10 @@ class PhotonPass {
     [[nodiscard]] PhotonMaps trace(const PassInfo& pass, SurfaceConnections* connections, Statistics& statistics) const;
     /// How many light paths are plain and how many guided, from what a few of both bring: before the first pass, by
     /// numbers of its own, so that every part of a render chooses alike. `seen`: what the connections' points are of;
-    /// both may be null. Only where plain and guided paths are side by side.
+    /// both may be null. `noise`: variance of every pass's image, summed over pixels and frames, that is not of light
+    /// paths. Only where plain and guided paths are side by side.
     void chooseShare(const ProgressToken& watch, SurfaceConnections* connections, const CameraRecord* seen,
-                     Statistics& statistics);
+                     double noise, Statistics& statistics);
     [[nodiscard]] bool plainAlone() const { return balance_.guided == 0.0f; }
     /// The passes that follow keep what this gate can see (a delta gate's temporal kernel) instead of the scene's.
     void setGate(const TimeGate& gate);

@@ -2,6 +2,9 @@
 
 #include "photon/Tuning.h"
 #include "photon/primitives/sliced/RecordBudget.h"
+#include "photon/view/CameraSubpath.h"
+
+#include "tungsten/integrator/SceneElements.h"
 
 namespace tungsten::photon {
 
@@ -19,7 +22,10 @@ RecordImportance::RecordImportance(const Scene& scene, const PhotonSettings& set
       reuse_(ReuseKernel::of(
           settings.gatherRadius,
           surfaceRadiusFactor(settings.progressive ? uint32_t(tuning::MiddlePass) : 0, settings.alpha))),
-      placed_(!scene.camera.hasParallelRays()) {
+      placed_(!scene.camera.hasParallelRays()),
+      direct_(!elementsWithBsdf(scene, [](const Bsdf& bsdf) {
+                   return (bsdf.lobes() & lobe::Specular) != 0 || isGlossyOnly(bsdf);
+               }).any()) {
     if (placed_) camera_ = scene.camera.position();
     const float plane = placed_ ? scene.camera.fieldOfView().value_or(FieldOfView()).planeDistance : 1.0f;
     const float width = 2.0f / (float(scene.camera.resolution.x) * plane);
@@ -30,6 +36,14 @@ Vec3f RecordImportance::toCamera(const Vec3f& position) const {
     const Vec3f way = camera_ - position;
     const float distance = way.length();
     return placed_ && distance > 0.0f ? way / distance : frame_.n * -1.0f;
+}
+
+bool RecordImportance::inView(const Vec3f& position, float margin) const {
+    if (scene_.camera.detectors()) return true;
+    const auto raster = scene_.camera.project(position);
+    const Vec2i& size = scene_.camera.resolution;
+    return raster && raster->x > -margin && raster->x < float(size.x) + margin && raster->y > -margin &&
+           raster->y < float(size.y) + margin;
 }
 
 auto RecordImportance::segmentToCamera(Ray ray, float reach, Region region) const -> std::optional<Segment> {
@@ -57,6 +71,8 @@ Contribution RecordImportance::at(const Vec3f& position, double time, const Regi
     const Vec3f direction = toCamera(position);
     const float least = std::max(std::sqrt(area), 1e-30f);
     const float distance = placed_ ? std::max((camera_ - position).length(), least) : 1.0f;
+    const float solid = std::max(area / (distance * distance), pixel_);
+    if (direct_ && !inView(position, std::sqrt(solid / pixel_))) return {};
     const auto segment = segmentToCamera({position, direction}, placed_ ? distance : Infinity, region);
     if (!segment) return {};
     power *= segment->transmittance;
@@ -64,16 +80,15 @@ Contribution RecordImportance::at(const Vec3f& position, double time, const Regi
     const int frame = placed_ ? sensor_.frameOf(arrival) : std::max(sensor_.frameOf(arrival), 0);
     if (frame < 0) return {};
     power *= sensor_.weight(arrival);
-    const float solid = std::max(area / (distance * distance), pixel_);
     // Cells are about as wide as what the record covers, at least as pixels: a power of two of these.
     const float width = std::exp2(std::round(0.5f * std::log2(solid / pixel_)));
     const Vec3f local = frame_.toLocal(direction * -1.0f);
     const float across = 1.0f / (std::max(std::abs(local.z), 1e-3f) * std::sqrt(pixel_) * width);
-    const auto column = int(std::clamp(local.x * across, -1e4f, 1e4f)),
-               row = int(std::clamp(local.y * across, -1e4f, 1e4f));
+    const auto column = int(std::floor(std::clamp(local.x * across, -1e4f, 1e4f))),
+               row = int(std::floor(std::clamp(local.y * across, -1e4f, 1e4f)));
     const uint32_t cell =
         (uint32_t(frame) * 31u + uint32_t(width)) * 0x9E3779B1u + uint32_t(row) * 0x85EBCA6Bu + uint32_t(column);
-    return {power / (distance * distance * std::sqrt(pixel_ * solid)), int(cell >> 1)};
+    return {power / (distance * distance * std::sqrt(pixel_ * solid)), int(cell & 0x7FFFFFFFu)};
 }
 
 auto RecordImportance::of(const Photon& photon) const -> Contributions {
@@ -123,7 +138,7 @@ Contribution RecordImportance::ofConnection(const ConnectionRecord& light, const
     const auto width = uint32_t(scene_.camera.resolution.x), column = point.pixel % width, row = point.pixel / width;
     const uint32_t cell = uint32_t(light.frame) * 0x9E3779B1u + row / side * 0x85EBCA6Bu + column / side;
     const Rgb radiance = point.vertex(scene_).scattering(light.from) * light.light * point.throughput;
-    return {meanComponent(radiance) / std::sqrt(covered), int(cell >> 1)};
+    return {meanComponent(radiance) / std::sqrt(covered), int(cell & 0x7FFFFFFFu)};
 }
 
 } // namespace tungsten::photon

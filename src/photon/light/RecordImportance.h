@@ -29,6 +29,8 @@ class RecordImportance {
     [[nodiscard]] Contributions of(const PhotonBeam& beam) const;
     [[nodiscard]] Contributions of(const SliceRecord& flights) const;
     [[nodiscard]] Contribution onSurface(const Photon& photon) const;
+    /// No mirror or refraction is in the way, nor shows what lies beside the view.
+    [[nodiscard]] bool seesDirectly() const { return direct_; }
     [[nodiscard]] Contribution ofConnection(const ConnectionRecord& light, const VisiblePoint& point) const;
 
   private:
@@ -36,6 +38,8 @@ class RecordImportance {
     /// covers an area across the view.
     [[nodiscard]] Contribution at(const Vec3f& position, double time, const Region& region, float power,
                                   float area) const;
+    /// Whether the image shows a point, or what is so many pixels from it.
+    [[nodiscard]] bool inView(const Vec3f& position, float margin) const;
     struct Segment {
         float transmittance = 1.0f;
         double time = 0.0;
@@ -54,6 +58,7 @@ class RecordImportance {
     ReuseKernel reuse_;   ///< of what connections bring, in a middle pass
     float pixel_;         ///< solid angle of one
     bool placed_;         ///< the camera has one position
+    bool direct_;         ///< seesDirectly()
 };
 
 } // namespace tungsten::photon
