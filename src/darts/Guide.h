@@ -189,7 +189,7 @@ class Guide {
     /// survival(). At most `most`, and 16 at once.
     [[nodiscard]] int copies(EscapeModel model, float logContribution, float logFirst, float most) const {
         const float gain = logContribution - logFirst;
-        const float above = model == EscapeModel::Bounded ? settings_.splitOut : SplitAbove;
+        const float above = model == EscapeModel::Bounded ? settings_.splitOut : Settings::SplitAbove;
         if (!(settings_.roulette > 0) || !(gain > std::log(above))) return 1;
         return int(
             std::clamp(std::exp(std::min(gain, 10.0f)) / above + 1.0f, 1.0f, std::max(std::min(most, 16.0f), 1.0f)));
@@ -223,8 +223,6 @@ class Guide {
     static constexpr float OutsideRate = 0.5f;
     static constexpr float LeastPeak = 0.5f;
     static constexpr float AlwaysTraced = 0.01f, LeastChance = 0.1f;
-    /// Bench: a closed white box, docs/notebook.md; 3 and 10 do the same to it, and nothing to other scenes.
-    static constexpr float SplitAbove = 4.0f;
     /// In transport mean free paths. Variance x CPU without the brightest hundredth, 6 seeds: dense cube 60, beams 0.28
     /// without splits, 0.15 with these, 0.16 with 8 from 128 on; dense cube 300, paths 0.72, 0.52, 0.74, points 0.88,
     /// 0.94, 0.90, which is noise. Bench: study bodies.

@@ -84,11 +84,10 @@ auto SharePilot::momentsByPixel(const StrategyBalance& balance) const -> std::ve
             const double share = balance.guided == 0.0f ? double(found_[k].logRatio.aloneOverBeside) : 1.0;
             const double here = weighed(found_[k], strategy, Halves), there = weighed(found_[k], strategy, balance);
             Before& frame = before[found_[k].frame];
-            const bool pairs = balance.guided > 0.0f || (!alone && !(plainInPairs_ && strategy == Strategy::Guided));
-            const double onWay = !pairs                                    ? 0.0
-                                 : balance.guided == 0.0f && plainInPairs_ ? there / double(Halves.plain)
-                                                                           : share * here;
-            pixel.second += share * here * there + 2.0 * onWay * frame.onWay + 2.0 * there * frame.aside;
+            double inPairs = share * here;
+            if (balance.guided == 0.0f && (alone || plainInPairs_))
+                inPairs = !alone && strategy == Strategy::Plain ? there / double(Halves.plain) : 0.0;
+            pixel.second += share * here * there + 2.0 * inPairs * frame.onWay + 2.0 * there * frame.aside;
             if (found_[k].found == Found::OnWay)
                 frame.onWay += there;
             else

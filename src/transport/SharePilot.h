@@ -29,7 +29,7 @@ struct PathCosts {
 class SharePilot {
   public:
     /// `plainInPairs`: what plain paths alone find together on one way is known from plain paths only, as guided ones
-    /// leave other records there.
+    /// leave records with directions of their own there.
     explicit SharePilot(bool plainInPairs = false) : plainInPairs_(plainInPairs) {}
 
     /// Shares of the time that plain paths may get; 1: all paths are plain, and nothing is weighed.

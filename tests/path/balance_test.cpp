@@ -88,7 +88,8 @@ TEST(SharePilot, KnowsItOfPathsThatFindMoreThanOnce) {
     const SharePilot pilot = pilotOf(Plain, Guided, 40000, 4);
     for (const StrategyBalance balance : {StrategyBalance{1.0f, 0.0f}, {0.5f, 0.5f}, {0.1f, 0.9f}}) {
         const double finds = double(balance.plain) * Plain + double(balance.guided) * Guided;
-        EXPECT_NEAR(pilot.variance(balance), 1.0 / finds - 1.0, 0.1 * (1.0 / finds - 1.0));
+        // 24000 guided paths find it: 0.65 % of standard error.
+        EXPECT_NEAR(pilot.variance(balance), 1.0 / finds - 1.0, 0.03 * (1.0 / finds - 1.0));
     }
 }
 

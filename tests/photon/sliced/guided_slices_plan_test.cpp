@@ -24,6 +24,17 @@ std::string fog(const std::string& gate, const std::string& media = {}, const ch
 }
 constexpr const char* SlowGlass = R"(, {"name": "glass", "type": "homogeneous", "speed_of_light": 0.6})";
 
+/// What reading the integrator warns of.
+std::string warningsOf(const std::string& json, const std::vector<std::string>& further) {
+    const test::SceneFile file(json);
+    const LoadedScene loaded = loadScene(file.path(), {{}, further});
+    (void)readPhotonSettings(loaded.integratorSettings, *loaded.scene, true);
+    std::string warnings;
+    for (const Problem& warning : loaded.diagnostics->warnings)
+        warnings += warning.path + ": " + warning.message + "\n";
+    return warnings;
+}
+
 struct Planned {
     PhotonSettings settings;
     PhotonPlan plan;
@@ -46,6 +57,17 @@ std::string inCube(const std::string& json) {
     return with(R"({"type": "cube", "bsdf": {"type": "dielectric", "ior": 1.5}, "int_medium": "glass",
         "ext_medium": "fog", "transform": {"position": [0, 0, 3]}})",
                 json);
+}
+
+TEST(SlicesInForwardPeaks, AreWarnedOf) {
+    for (const char* g : {"0.95", "-0.95"}) {
+        const std::string told = warningsOf(fog(DeltaGate, {}, g), {"integrator.volume_photon_type=volumes"});
+        EXPECT_NE(told.find("integrator.volume_photon_type: 'volumes' evaluates phase functions"), std::string::npos)
+            << told;
+        EXPECT_NE(told.find("0.95"), std::string::npos) << told;
+    }
+    EXPECT_EQ(warningsOf(fog(DeltaGate, {}, "0.9"), {"integrator.volume_photon_type=volumes"}), "");
+    EXPECT_EQ(warningsOf(fog(DeltaGate, {}, "0.95"), {"integrator.volume_photon_type=points"}), "");
 }
 
 TEST(GuidedSlicesPlan, PlainWhereGuidingLoses) {

@@ -83,11 +83,9 @@ void Slices::read(const ObjectReader& block, const Scene& scene, PhotonSettings&
     classes = SliceClasses::of(kind, steadyState, settings.lowOrderScattering, settings.excludeNonMis);
     classes.shortFlights = settings.shortFlights;
     if (const float peak = largestPeak(scene); peak > MostSlicedPeak)
-        block.warn("volume_photon_type",
-                   "'" + type + "' evaluates phase functions at vertices that are not drawn by them: with |g| of " +
-                       brief(peak) +
-                       " much of the light is in samples so rare that image and standard error "
-                       "may lack it; points and paths show it");
+        block.warn("volume_photon_type", "'" + type +
+                                             "' evaluates phase functions instead of drawing by them: with |g| of " +
+                                             brief(peak) + " image and standard error may lack light; paths show it");
     if (!slicesNeedBeams(scene, classes)) return;
     classes.share = tuning::ShareBesideBeams;
     classes.sharedShare = tuning::SharedBesideBeams;
